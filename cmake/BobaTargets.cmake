@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# One way to declare a library, a program and a test, so that every folder's file is a list of sources.
+
+add_library(boba_warnings INTERFACE)
+target_compile_options(boba_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+
+# boba_add_library(NAME [SOURCES ...] [LIBRARIES ...]): target boba_NAME with the alias boba::NAME.
+# Without sources it is a header-only (interface) library.
+function(boba_add_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  if(ARG_SOURCES)
+    add_library(boba_${name} STATIC ${ARG_SOURCES})
+    target_include_directories(boba_${name} PUBLIC ${CMAKE_SOURCE_DIR})
+    target_link_libraries(boba_${name} PUBLIC ${ARG_LIBRARIES} PRIVATE boba_warnings)
+  else()
+    add_library(boba_${name} INTERFACE)
+    target_include_directories(boba_${name} INTERFACE ${CMAKE_SOURCE_DIR})
+    target_link_libraries(boba_${name} INTERFACE ${ARG_LIBRARIES})
+  endif()
+  add_library(boba::${name} ALIAS boba_${name})
+endfunction()
+
+# boba_add_test(NAME LABEL label SOURCES ... LIBRARIES ...): one GoogleTest program; each of its cases is a
+# ctest of its own. ${CMAKE_SOURCE_DIR}/tests/data is reachable as BOBA_TEST_DATA.
+function(boba_add_test name)
+  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gtest_main boba_warnings)
+  target_compile_definitions(${name} PRIVATE BOBA_TEST_DATA="${CMAKE_SOURCE_DIR}/tests/data")
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_PREFIX "${name}."
+    PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT ${ARG_TIMEOUT})
+endfunction()
