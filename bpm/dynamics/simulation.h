@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/dynamics/observer.h"
+#include "bpm/dynamics/stage.h"
+#include "bpm/laws/material.h"
+#include "bpm/packing/packing.h"
+#include "bpm/packing/snapshot.h"
+
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace boba {
+
+struct SimulationOptions {
+  double dt = 0.1; ///< tau
+  int threads = 1;
+  double skin = 0.3; ///< d; margin of the contact list
+};
+
+/// Sums over the packing at the present step. Stress: tension positive, xx yy zz xy xz yz, k/d.
+struct Totals {
+  std::array<double, 6> stress{}; ///< all parts, kinetic included
+  double pressure = 0.0;          ///< -(xx + yy + zz) / 3, k/d
+  double kinetic_energy = 0.0;    ///< k d^2, full-step velocities
+  double elastic_energy = 0.0;    ///< k d^2, pairwise part of bonds and contacts (the many-body term has no energy)
+  double largest_overlap = 0.0;   ///< d, over all contacts
+  double mu() const { return pressure != 0.0 ? stress[3] / pressure : 0.0; }
+};
+
+/// Seconds spent in each part of the steps so far, for the benchmark and the log.
+struct Timings {
+  double bonds = 0.0, contacts = 0.0, search = 0.0, integration = 0.0, other = 0.0;
+  std::int64_t steps = 0, list_builds = 0;
+};
+
+/// A blow-up: the run cannot go on. The message names node, grain, step and a likely cause.
+class BlowUp : public std::runtime_error {
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The run was told to stop (signal, wall-time limit) and is at a step from which it can go on.
+enum class RunOutcome { finished, stopped };
+
+/// Everything that must be stored for a run to go on bit for bit. Names are stable; see docs/formats.md, "Checkpoint".
+struct SavedState {
+  std::map<std::string, std::vector<double>> real;
+  std::map<std::string, std::vector<std::int64_t>> integer;
+};
+
+/// A packing in motion: the engine's only public face.
+class Simulation {
+public:
+  /// \throws std::invalid_argument for a packing or an option outside its range.
+  Simulation(Packing packing, const Material& material, const SimulationOptions& options);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  /// Called between steps; return true to stop (a signal, a wall-time limit).
+  using StopRequest = std::function<bool()>;
+  /// Runs one stage to its end, from its beginning or, after `restore`, from where it was.
+  /// \throws BlowUp, std::runtime_error when the stage cannot reach its goal.
+  RunOutcome run(int stage_index, const Stage& stage, std::span<Observer* const> observers,
+                 const StopRequest& stop = {});
+
+  /// Forces and stress at the present positions and velocities, without moving anything.
+  void evaluate();
+
+  std::int64_t step() const;
+  double time() const;
+  double strain() const;
+  const Box& box() const;
+  const Packing& packing() const; ///< as it was at the start; templates and grains do not change
+  const Totals& totals() const;   ///< of the last step an observer asked for
+  const Timings& timings() const;
+  std::string instruction_set() const; ///< "avx512", "avx2" or "baseline"
+
+  struct Parts {
+    bool velocity = false;
+    bool force = false;
+  };
+  Snapshot snapshot(Parts parts) const;
+  Snapshot snapshot() const { return snapshot(Parts{}); }
+  /// Forces on the two ends of a `press` stage, along z (k d): lower, upper.
+  std::array<double, 2> end_forces() const;
+  /// Distance between the two ends (walls or clamps) at present, d; 0 when there are none.
+  double end_gap() const;
+
+  SavedState save() const;
+  /// \throws std::runtime_error when the state does not belong to this packing.
+  void restore(const SavedState& state);
+  /// Index of the stage that a restored state is in (or that comes next).
+  int stage_index() const;
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace boba

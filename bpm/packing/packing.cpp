@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/packing/packing.h"
+
+namespace boba {
+
+std::vector<std::int64_t> Packing::first_nodes() const {
+  std::vector<std::int64_t> first(grains.size() + 1, 0);
+  for (int g = 0; g < n_grains(); ++g) {
+    first[g + 1] = first[g] + template_of(g).n_nodes();
+  }
+  return first;
+}
+
+Topology Packing::topology(bool with_bonds) const {
+  Topology topology;
+  topology.first_node = first_nodes();
+  topology.id = id;
+  for (const Grain& grain : grains) {
+    topology.molecule.push_back(grain.molecule);
+    topology.species.push_back(grain.species);
+    topology.alpha.push_back(grain.alpha);
+    topology.template_index.push_back(grain.template_index);
+  }
+  if (with_bonds) {
+    for (int g = 0; g < n_grains(); ++g) {
+      const std::int64_t first = topology.first_node[g];
+      for (const Bond& bond : template_of(g).bonds) {
+        topology.bonds.push_back({first + bond.i, first + bond.j, bond.r0});
+      }
+    }
+  }
+  return topology;
+}
+
+Packing make_packing(const Box& box, std::vector<std::shared_ptr<const GrainTemplate>> templates,
+                     const std::vector<Placement>& placements) {
+  Packing packing;
+  packing.box = box;
+  packing.templates = std::move(templates);
+  for (const Placement& placement : placements) {
+    packing.grains.push_back(placement.grain);
+    packing.grains.back().molecule = packing.n_grains();
+    for (const Vector3& x : packing.templates[placement.grain.template_index]->position) {
+      packing.position.push_back(placement.centre + placement.rotation * x);
+      packing.id.push_back(static_cast<std::int64_t>(packing.position.size()));
+    }
+  }
+  packing.velocity.assign(packing.position.size(), Vector3::Zero());
+  return packing;
+}
+
+} // namespace boba

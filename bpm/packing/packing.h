@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/grain/grain_template.h"
+#include "bpm/packing/box.h"
+#include "bpm/packing/snapshot.h"
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace boba {
+
+/// One grain of a packing: which template it is made of and what its bonds are like.
+struct Grain {
+  int template_index = 0;
+  int species = 0;
+  double alpha = 0.0; ///< many-body coefficient, k d
+  std::int64_t molecule = 0; ///< number shown in files
+};
+
+/// Everything a run starts from: the cell, the grains and every node's position and velocity.
+///
+/// Nodes are numbered grain by grain, in template order inside a grain. Positions are unwrapped and each grain is whole.
+struct Packing {
+  Box box;
+  std::vector<std::shared_ptr<const GrainTemplate>> templates;
+  std::vector<Grain> grains;
+  std::vector<std::int64_t> id;  ///< per node, as files show it
+  std::vector<Vector3> position; ///< d
+  std::vector<Vector3> velocity; ///< d/tau
+
+  int n_grains() const { return static_cast<int>(grains.size()); }
+  const GrainTemplate& template_of(int grain) const { return *templates[grains[grain].template_index]; }
+  /// Number of the first node of each grain, and the total as last entry (size n_grains + 1).
+  std::vector<std::int64_t> first_nodes() const;
+  /// Bonds are written out for every grain only when `with_bonds`.
+  Topology topology(bool with_bonds) const;
+};
+
+/// Where one grain goes: the template's nodes are rotated about their mean, then moved to `centre`.
+struct Placement {
+  Grain grain;
+  Vector3 centre = Vector3::Zero();
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+};
+
+/// A packing at rest from templates and placements; ids and molecules run from 1.
+Packing make_packing(const Box& box, std::vector<std::shared_ptr<const GrainTemplate>> templates,
+                     const std::vector<Placement>& placements);
+
+} // namespace boba
