@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/forces/contact_list.h"
+#include "bpm/forces/kernels/kernels.h"
+#include "bpm/forces/network_data.h"
+#include "bpm/forces/wall.h"
+#include "bpm/laws/material.h"
+#include "bpm/packing/lane_layout.h"
+
+#include <array>
+#include <vector>
+
+namespace boba {
+
+using kernels::Virial;
+
+/// Symmetric tensor as xx yy zz xy xz yz.
+using Tensor6 = std::array<double, 6>;
+
+/// What one grain contributes to the stress: sigma = -(sum of virial + kinetic) / volume.
+struct GrainSums {
+  Tensor6 virial{};  ///< sum of r_ij f_ij over bonds and half of each contact, k d^2
+  Tensor6 kinetic{}; ///< sum of m v v, k d^2
+  double virial_trace = 0.0, kinetic_trace = 0.0; ///< the only members set by Virial::trace
+};
+
+/// Sums over all contacts of a packing.
+struct ContactTotals {
+  double largest_overlap = 0.0; ///< d; of node pairs and of nodes with walls
+  double energy = 0.0;          ///< k d^2
+  std::int64_t n_touching = 0;  ///< pairs
+};
+
+/// How an evaluation treats velocities and how much it sums up.
+struct Evaluation {
+  double kick = 0.0;      ///< v += kick f / m when a node's force is complete, tau
+  double half_kick = 0.0; ///< full-step velocity = v + half_kick f / m, tau
+  Virial virial = Virial::none;
+  /// d/dt of the cell matrix as far as it does not act on positions (remap = "velocities"): an image displaced by h n moves
+  /// with rate n, and the streaming velocity is taken from the kinetic tensor.
+  Matrix3 residual_rate = Matrix3::Zero();
+};
+
+/// All forces of a packing: contacts and walls first, then bonds, which finish each node and kick it.
+///
+/// Every grain sums the forces on its own nodes in an order that does not depend on threads.
+class ForceField {
+public:
+  ForceField(const Packing& packing, const LaneLayout& layout, const Material& material, double skin);
+
+  /// Rebuilds the contact list when it must, and evaluates. Returns the sums of every grain (valid where asked for).
+  void evaluate(LaneState& state, const Box& box, const Evaluation& what);
+
+  const std::vector<GrainSums>& grain_sums() const { return sums_; }
+  const ContactTotals& contact_totals() const { return contact_totals_; }
+  /// Pairwise elastic energy of all bonds, k d^2; a pass of its own, for rare use.
+  double bond_energy(const LaneState& state, const Box& box) const;
+  /// The bond with the largest r / r0, over all grains; a pass of its own, for rare use.
+  struct Stretch {
+    double ratio = 0.0;
+    int grain = 0, node = 0;
+  };
+  Stretch largest_stretch(const LaneState& state) const;
+
+  ContactList& contact_list() { return contact_list_; }
+  const ContactList& contact_list() const { return contact_list_; }
+  std::vector<Wall>& walls() { return walls_; }
+  const std::vector<Wall>& walls() const { return walls_; }
+  const NetworkData& network(int template_index) const { return networks_[template_index]; }
+  const kernels::KernelTable& kernel_table() const { return table_; }
+  bool has_periodic_template() const { return has_periodic_template_; }
+
+  /// Seconds spent so far.
+  double bond_seconds = 0.0, contact_seconds = 0.0, search_seconds = 0.0;
+
+private:
+  void contacts_of(int grain, LaneState& state, const kernels::ContactParameters& parameters, bool with_sums);
+  void bonds_of(const Block& block, LaneState& state, const Box& box, const Evaluation& what);
+  void reduce_contacts();
+
+  const LaneLayout& layout_;
+  Material material_;
+  const kernels::KernelTable& table_;
+  std::vector<NetworkData> networks_;
+  std::vector<const NetworkData*> network_of_grain_;
+  ContactList contact_list_;
+  std::vector<Wall> walls_;
+  std::vector<GrainSums> sums_;
+  std::vector<kernels::ContactSums> contact_sums_;
+  ContactTotals contact_totals_;
+  bool has_periodic_template_ = false;
+};
+
+} // namespace boba

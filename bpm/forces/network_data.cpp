@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/forces/network_data.h"
+
+#include <algorithm>
+
+namespace boba {
+
+NetworkData::NetworkData(const GrainTemplate& grain) : n_nodes_(grain.n_nodes()) {
+  const std::vector<double> volume = reference_node_volumes(n_nodes_, grain.bonds);
+  first_bond_.assign(n_nodes_ + 1, 0);
+  std::vector<std::vector<std::int32_t>> partners(n_nodes_);
+  for (const Bond& bond : grain.bonds) {
+    const double inverse_volume = 1.0 / (volume[bond.i] + volume[bond.j]);
+    Eigen::Vector3i n = Eigen::Vector3i::Zero();
+    if (grain.period) {
+      const Eigen::Vector3d d = grain.position[bond.i] - grain.position[bond.j];
+      n = d.cwiseQuotient(*grain.period).array().round().matrix().cast<int>();
+    }
+    if (n != Eigen::Vector3i::Zero()) {
+      image_bonds_.push_back({bond.i, bond.j, n, bond.r0, inverse_volume});
+      continue;
+    }
+    records_.push_back({bond.r0, 1.0 / bond.r0, inverse_volume, bond.j});
+    ++first_bond_[bond.i + 1];
+    partners[bond.i].push_back(bond.j);
+    partners[bond.j].push_back(bond.i);
+  }
+  for (int i = 0; i < n_nodes_; ++i) {
+    first_bond_[i + 1] += first_bond_[i];
+  }
+  first_partner_.push_back(0);
+  for (std::vector<std::int32_t>& list : partners) {
+    std::sort(list.begin(), list.end());
+    partners_.insert(partners_.end(), list.begin(), list.end());
+    first_partner_.push_back(static_cast<std::int64_t>(partners_.size()));
+  }
+}
+
+} // namespace boba

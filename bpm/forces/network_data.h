@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/forces/kernels/kernels.h"
+#include "bpm/grain/grain_template.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace boba {
+
+/// A bond of a periodic template that joins node i to an image of node j: x_j + h n.
+struct ImageBond {
+  int i, j;
+  Eigen::Vector3i n;
+  double r0, inverse_volume;
+};
+
+/// A template's bonds as the hot loop wants them, and who is bonded to whom for the contact search.
+class NetworkData {
+public:
+  explicit NetworkData(const GrainTemplate& grain);
+
+  kernels::Network view() const { return {n_nodes_, first_bond_.data(), records_.data()}; }
+  int n_nodes() const { return n_nodes_; }
+  std::int64_t n_bonds() const { return static_cast<std::int64_t>(records_.size() + image_bonds_.size()); }
+  const std::vector<ImageBond>& image_bonds() const { return image_bonds_; }
+  /// Nodes bonded to node i within the same image, ascending.
+  const std::int32_t* partners_begin(int i) const { return partners_.data() + first_partner_[i]; }
+  const std::int32_t* partners_end(int i) const { return partners_.data() + first_partner_[i + 1]; }
+
+private:
+  int n_nodes_ = 0;
+  std::vector<std::int64_t> first_bond_;
+  std::vector<kernels::BondRecord> records_;
+  std::vector<ImageBond> image_bonds_;
+  std::vector<std::int64_t> first_partner_;
+  std::vector<std::int32_t> partners_;
+};
+
+} // namespace boba
