@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace boba {
+
+/// What a grain template is made from: shape, size, surface and seed. Lengths in d, densities in nodes per d^3.
+///
+/// The size is nominal: a shape of volume V holds about `density * V` nodes for either surface.
+/// With `n_nodes` the shape is scaled as a whole to hold exactly that number; `radius`, `height` and `size` then give
+/// only its proportions (nothing for a sphere).
+struct TemplateSpec {
+  enum class Shape {
+    sphere,       ///< `radius`
+    cylinder,     ///< `radius` and `height`, axis along z
+    box,          ///< `size`
+    periodic_box, ///< `size`; no surface, bonds across the faces
+  };
+  enum class Surface {
+    cut,  ///< the nodes of a bulk arrangement that lie inside the shape
+    wall, ///< relaxed inside a soft wall: outer layers follow the wall
+  };
+
+  Shape shape = Shape::sphere;
+  Surface surface = Surface::cut;
+  double radius = 10.0;
+  double height = 40.0;
+  Eigen::Vector3d size = Eigen::Vector3d::Constant(20.0);
+  std::optional<int> n_nodes = std::nullopt;
+  std::uint64_t seed = 1;
+  double bond_cutoff = 1.5; ///< pairs closer than this in the undeformed grain are bonded
+  double density = 1.226;   ///< of the bulk arrangement
+};
+
+/// Throws std::invalid_argument (member, value, what is allowed) when the specification makes no sense.
+void validate(const TemplateSpec& spec);
+
+/// One line that names everything the template depends on and nothing else: equal texts mean equal templates.
+std::string canonical_text(const TemplateSpec& spec);
+
+/// 64-bit FNV-1a hash of the canonical text. Two texts may share a hash: whoever uses it compares the texts too.
+/// Source: IETF draft-eastlake-fnv, offset basis and prime for 64 bits.
+std::uint64_t template_hash(const std::string& canonical_text);
+
+/// "sphere", "cylinder", "box", "periodic_box".
+std::string to_string(TemplateSpec::Shape shape);
+/// "cut", "wall".
+std::string to_string(TemplateSpec::Surface surface);
+/// Inverse of to_string. Throws std::invalid_argument for another word.
+TemplateSpec::Shape shape_from_string(const std::string& word);
+TemplateSpec::Surface surface_from_string(const std::string& word);
+
+} // namespace boba
