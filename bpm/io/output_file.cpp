@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/io/output_file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <stdexcept>
+#include <unistd.h>
+#include <utility>
+#include <zlib.h>
+
+namespace boba {
+
+void check_file_mode(const std::filesystem::path& path, FileMode mode) {
+  if (mode == FileMode::create && std::filesystem::exists(path)) {
+    throw std::runtime_error(fmt::format("{}: exists already; it is only overwritten when asked to", path.string()));
+  }
+}
+
+OutputFile::OutputFile(const std::filesystem::path& path, FileMode mode) : path_(path) {
+  check_file_mode(path, mode);
+  errno = 0;
+  if (path.extension() == ".gz") {
+    gz_ = gzopen(path.c_str(), mode == FileMode::append ? "ab" : "wb");
+    if (gz_ == nullptr) {
+      fail(errno);
+    }
+    return;
+  }
+  const int how = O_WRONLY | O_CREAT | O_CLOEXEC | (mode == FileMode::append ? O_APPEND : O_TRUNC);
+  descriptor_ = ::open(path.c_str(), how, 0666);
+  if (descriptor_ < 0) {
+    fail(errno);
+  }
+}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : path_(std::move(other.path_)), gz_(std::exchange(other.gz_, nullptr)),
+      descriptor_(std::exchange(other.descriptor_, -1)), buffer_(std::move(other.buffer_)) {}
+
+OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(gz_, other.gz_);
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(buffer_, other.buffer_);
+  return *this;
+}
+
+OutputFile::~OutputFile() {
+  // A destructor cannot report; whoever needs to know calls close().
+  try {
+    close();
+  } catch (const std::exception&) {
+  }
+}
+
+void OutputFile::write(std::string_view bytes) {
+  flush_buffer();
+  put(bytes);
+}
+
+void OutputFile::flush() {
+  flush_buffer();
+  if (gz_ != nullptr && gzflush(gz_, Z_SYNC_FLUSH) != Z_OK) {
+    fail(errno);
+  }
+}
+
+void OutputFile::close() {
+  if (gz_ == nullptr && descriptor_ < 0) {
+    return;
+  }
+  // Taken out first: a failure must neither leak the handle nor be met again by the destructor.
+  OutputFile closing(std::move(*this));
+  path_ = closing.path_;
+  const auto drop = [&closing] {
+    if (closing.gz_ != nullptr) {
+      return gzclose(std::exchange(closing.gz_, nullptr)) == Z_OK;
+    }
+    return ::close(std::exchange(closing.descriptor_, -1)) == 0;
+  };
+  try {
+    closing.flush_buffer();
+  } catch (const std::exception&) {
+    drop();
+    throw;
+  }
+  errno = 0;
+  if (!drop()) {
+    fail(errno);
+  }
+}
+
+void OutputFile::flush_buffer() {
+  if (buffer_.size() == 0) {
+    return;
+  }
+  try {
+    put(std::string_view(buffer_.data(), buffer_.size()));
+  } catch (const std::exception&) {
+    buffer_.clear(); // the destructor must not try again
+    throw;
+  }
+  buffer_.clear();
+}
+
+void OutputFile::put(std::string_view bytes) {
+  while (!bytes.empty()) {
+    errno = 0;
+    const std::size_t portion = std::min<std::size_t>(bytes.size(), 1 << 30);
+    const ssize_t done = gz_ != nullptr ? gzwrite(gz_, bytes.data(), static_cast<unsigned>(portion))
+                                        : ::write(descriptor_, bytes.data(), portion);
+    if (done < 0 && errno == EINTR) {
+      continue;
+    }
+    if (done <= 0) {
+      fail(errno);
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(done));
+  }
+}
+
+void OutputFile::fail(int code) const {
+  throw std::runtime_error(
+      fmt::format("{}: cannot be written: {}", path_.string(), code != 0 ? std::strerror(code) : "unknown error"));
+}
+
+void cut_file(const std::filesystem::path& path, std::uintmax_t length) {
+  std::error_code error;
+  std::filesystem::resize_file(path, length, error);
+  if (error) {
+    throw std::runtime_error(fmt::format("{}: cannot be cut to {} bytes: {}", path.string(), length, error.message()));
+  }
+}
+
+} // namespace boba
