@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <fmt/format.h>
+#include <fstream>
 #include <hdf5.h>
 #include <stdexcept>
+#include <string_view>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -71,19 +73,6 @@ struct Flat {
     use("period", period, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, "d");
     use("reference_volume", reference_volume, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, "d^3");
   }
-
-  /// CRC-32 (zlib) over lengths and contents in the order of visit().
-  std::uint64_t checksum() {
-    uLong crc = crc32_z(0, nullptr, 0);
-    visit([&](const char*, auto& data, hid_t, hid_t, const char*) {
-      const std::uint64_t length = data.size();
-      crc = crc32_z(crc, reinterpret_cast<const Bytef*>(&length), sizeof length);
-      if (!data.empty()) { // a null pointer would start the sum anew
-        crc = crc32_z(crc, reinterpret_cast<const Bytef*>(data.data()), data.size() * sizeof(data[0]));
-      }
-    });
-    return crc;
-  }
 };
 
 Flat flatten(const GrainTemplate& grain, const std::string& text) {
@@ -137,15 +126,10 @@ void write_flat(const fs::path& file, Flat flat) {
     }
     require(data.empty() || H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) >= 0, name);
   });
-  const std::uint64_t checksum = flat.checksum();
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle attribute(H5Acreate2(h5, "crc32", H5T_STD_U64LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  require(H5Awrite(attribute, H5T_NATIVE_UINT64, &checksum) >= 0, "checksum");
 }
 
 Flat read_flat(const fs::path& file) {
   const Handle h5(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  const hsize_t file_bytes = fs::file_size(file);
   Flat flat;
   flat.visit([&](const char* name, auto& data, hid_t, hid_t memory_type, const char*) {
     const Handle set(H5Dopen2(h5, name, H5P_DEFAULT), H5Dclose);
@@ -153,14 +137,46 @@ Flat read_flat(const fs::path& file) {
     hsize_t length = 0;
     require(H5Sget_simple_extent_ndims(space) == 1, "rank");
     H5Sget_simple_extent_dims(space, &length, nullptr);
-    require(length * sizeof(data[0]) <= file_bytes, "length"); // a damaged length must not exhaust the memory
     data.resize(length);
     require(length == 0 || H5Dread(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) >= 0, name);
   });
-  std::uint64_t checksum = 0;
-  const Handle attribute(H5Aopen(h5, "crc32", H5P_DEFAULT), H5Aclose);
-  require(H5Aread(attribute, H5T_NATIVE_UINT64, &checksum) >= 0 && checksum == flat.checksum(), "checksum");
   return flat;
+}
+
+// The file is an HDF5 file followed by this seal: a mark and the CRC-32 (zlib) of all bytes before it. HDF5 ignores
+// what follows its own end, and is never shown a damaged file (its library does not recover cleanly from some of them).
+constexpr std::string_view seal_mark = "BOBASEAL";
+constexpr std::size_t seal_length = seal_mark.size() + sizeof(std::uint64_t);
+
+std::string read_bytes(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+std::string seal_of(std::string_view bytes) {
+  const std::uint64_t crc = crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  std::string seal(seal_mark);
+  for (int byte = 0; byte < 8; ++byte) {
+    seal += static_cast<char>(crc >> (8 * byte) & 0xff);
+  }
+  return seal;
+}
+
+void append_seal(const fs::path& file) {
+  const std::string seal = seal_of(read_bytes(file));
+  std::ofstream out(file, std::ios::binary | std::ios::app);
+  out << seal;
+  out.close();
+  require(out.good(), "seal");
+}
+
+bool seal_is_right(const fs::path& file) {
+  const std::string bytes = read_bytes(file);
+  if (bytes.size() <= seal_length) {
+    return false;
+  }
+  const std::string_view content(bytes.data(), bytes.size() - seal_length);
+  return seal_of(content) == std::string_view(bytes).substr(content.size());
 }
 
 } // namespace
@@ -171,6 +187,7 @@ void write_template(const fs::path& file, const GrainTemplate& grain, const std:
   try {
     const QuietErrors quiet;
     write_flat(beside, flatten(grain, text));
+    append_seal(beside);
     fs::rename(beside, file);
   } catch (const std::exception& error) {
     fs::remove(beside, ignored);
@@ -180,7 +197,7 @@ void write_template(const fs::path& file, const GrainTemplate& grain, const std:
 
 std::optional<GrainTemplate> read_template(const fs::path& file, const std::string& text) {
   std::error_code missing;
-  if (!fs::is_regular_file(file, missing)) {
+  if (!fs::is_regular_file(file, missing) || !seal_is_right(file)) {
     return std::nullopt;
   }
   try {

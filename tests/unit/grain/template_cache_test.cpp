@@ -68,7 +68,7 @@ TEST_F(TemplateCacheTest, PeriodSurvivesTheFile) {
   EXPECT_FALSE(read_template(directory_ / "box.h5", "another box"));
 }
 
-TEST_F(TemplateCacheTest, AnyDamagedByteOfTheDataIsNoticed) {
+TEST_F(TemplateCacheTest, AnyDamagedByteIsNoticed) {
   const GrainTemplate first = get();
   std::string good;
   {
@@ -76,20 +76,12 @@ TEST_F(TemplateCacheTest, AnyDamagedByteOfTheDataIsNoticed) {
     good.assign(std::istreambuf_iterator<char>(in), {});
   }
   const std::string text = canonical_text(spec_);
-  constexpr std::size_t stride = 13;
-  std::size_t noticed = 0;
-  for (std::size_t at = 0; at < good.size(); at += stride) {
+  for (std::size_t at = 0; at < good.size(); at += 13) {
     std::string bad = good;
     bad[at] = static_cast<char>(bad[at] ^ 0x20);
     std::ofstream(file(), std::ios::binary) << bad;
-    if (const auto read = read_template(file(), text)) {
-      expect_equal(first, *read); // the byte was padding
-    } else {
-      ++noticed;
-    }
+    EXPECT_FALSE(read_template(file(), text)) << "byte " << at;
   }
-  EXPECT_GE(noticed, (first.n_nodes() * 24 + first.bonds.size() * 16) / stride - 8)
-      << "damage to the arrays went through";
   std::ofstream(file(), std::ios::binary) << good.substr(0, good.size() / 2);
   expect_equal(first, get());
   EXPECT_TRUE(built_);
