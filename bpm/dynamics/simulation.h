@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -79,7 +80,7 @@ public:
   const Box& box() const;
   const Packing& packing() const; ///< as it was at the start; templates and grains do not change
   const Totals& totals() const;   ///< of the last step an observer asked for
-  const Timings& timings() const;
+  Timings timings() const;
   std::string instruction_set() const; ///< "avx512", "avx2" or "baseline"
 
   struct Parts {

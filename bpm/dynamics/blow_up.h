@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/forces/force_field.h"
+#include "bpm/laws/material.h"
+#include "bpm/packing/lane_layout.h"
+
+#include <string>
+
+namespace boba {
+
+/// Largest r / r0 of a bond before a run is stopped.
+inline constexpr double largest_bond_stretch = 3.0;
+
+/// Names the fastest (or not finite) node of a block, its grain, the step, and the likely cause.
+std::string describe_fast_node(const Block& block, const LaneState& state, std::int64_t step, double dt,
+                               const Material& material);
+
+/// The same for a bond that is stretched beyond `largest_bond_stretch`.
+std::string describe_stretched_bond(const ForceField::Stretch& stretch, std::int64_t step, double dt);
+
+} // namespace boba

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/packing/lane_layout.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace boba {
+
+/// A set of nodes that moves rigidly at a given velocity.
+/// Source: docs/notation.md, "Clamp".
+struct Clamp {
+  std::vector<std::int64_t> first;  ///< index of each node's x component in the state's arrays
+  std::vector<std::int32_t> stride; ///< distance of its components
+  Vector3 velocity = Vector3::Zero();
+  Vector3 force = Vector3::Zero(); ///< of the other nodes on the clamped ones at the last step, k d
+};
+
+/// The nodes whose z lies in [low, high].
+Clamp clamp_between(double low, double high, const LaneLayout& layout, const LaneState& state);
+
+/// Takes the clamped nodes' forces into `clamp.force` and gives the nodes the clamp's velocity and no force.
+void apply_clamp(Clamp& clamp, LaneState& state);
+
+} // namespace boba

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/dynamics/compress_driver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace boba {
+
+namespace {
+
+/// Steps between two looks at the elastic energy while settling: it takes a pass over all bonds.
+constexpr std::int64_t settle_interval = 20;
+
+} // namespace
+
+void CompressDriver::begin(Stepper& stepper) { start_time_ = stepper.time(); }
+
+bool CompressDriver::has_settled(const Stepper& stepper) const {
+  if (std::abs(stepper.pressure() / stage_.barostat.pressure - 1.0) >= stage_.pressure_tolerance ||
+      stepper.step() % settle_interval != 0) {
+    return false;
+  }
+  const double elastic = stepper.bond_energy() + stepper.forces().contact_totals().energy;
+  return stepper.kinetic_energy() < stage_.kinetic_tolerance * elastic;
+}
+
+CellRates CompressDriver::update(Stepper& stepper) {
+  if (stepper.time() - start_time_ > stage_.max_time) {
+    throw std::runtime_error(
+        fmt::format("compress: not settled after max_time = {} tau: P = {:.6g} (target {:.6g} k/d), kinetic energy {:.3g} k d^2; "
+                    "a smaller rate, a larger max_time or wider tolerances help",
+                    stage_.max_time, stepper.pressure(), stage_.barostat.pressure, stepper.kinetic_energy()));
+  }
+  if (phase_ == Phase::ramp && stepper.pressure() >= stage_.barostat.pressure) {
+    const double modulus = stepper.affine_bulk_modulus();
+    gain_ = barostat_gain(stage_.barostat, {modulus, stepper.sound_crossing(modulus), 0.0});
+    phase_ = Phase::settle;
+  }
+  if (phase_ == Phase::ramp) {
+    return {.dilation = -stage_.rate};
+  }
+  if (has_settled(stepper)) {
+    phase_ = Phase::settled;
+    return {};
+  }
+  return {.dilation = barostat_rate(stage_.barostat, gain_, stepper.pressure())};
+}
+
+StageProgress CompressDriver::progress(const Stepper& stepper) const {
+  StageProgress progress;
+  progress.phase = phase_ == Phase::ramp ? "ramp" : "settle";
+  progress.driven = "P";
+  progress.value = stepper.pressure();
+  progress.target = stage_.barostat.pressure;
+  const double reached = std::clamp(stepper.pressure() / stage_.barostat.pressure, 0.0, 1.0);
+  progress.done = phase_ == Phase::ramp ? 0.8 * reached : (finished() ? 1.0 : 0.9);
+  return progress;
+}
+
+void CompressDriver::save(SavedState& saved) const {
+  saved.real["driver"] = {static_cast<double>(phase_), start_time_, gain_};
+}
+
+void CompressDriver::restore(const SavedState& saved, Stepper&) {
+  const std::vector<double>& numbers = saved.real.at("driver");
+  phase_ = static_cast<Phase>(static_cast<int>(numbers.at(0)));
+  start_time_ = numbers.at(1);
+  gain_ = numbers.at(2);
+}
+
+} // namespace boba

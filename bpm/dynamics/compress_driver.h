@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/dynamics/stage_driver.h"
+
+namespace boba {
+
+/// Isotropic compression: a ramp at a constant rate to the target pressure, then the barostat until pressure and kinetic
+/// energy have settled.
+class CompressDriver : public StageDriver {
+public:
+  explicit CompressDriver(const CompressStage& stage) : stage_(stage) {}
+
+  void begin(Stepper& stepper) override;
+  bool needs_pressure() const override { return true; }
+  CellRates update(Stepper& stepper) override;
+  bool finished() const override { return phase_ == Phase::settled; }
+  std::int64_t steps_left(const Stepper&) const override { return -1; }
+  StageProgress progress(const Stepper& stepper) const override;
+  void save(SavedState& saved) const override;
+  void restore(const SavedState& saved, Stepper& stepper) override;
+
+private:
+  enum class Phase { ramp, settle, settled };
+  bool has_settled(const Stepper& stepper) const;
+
+  CompressStage stage_;
+  Phase phase_ = Phase::ramp;
+  double start_time_ = 0.0;
+  double gain_ = 0.0;
+};
+
+} // namespace boba

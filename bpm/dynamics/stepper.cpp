@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/dynamics/stepper.h"
+
+#include "bpm/dynamics/blow_up.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace boba {
+
+Stepper::Stepper(Packing packing, const Material& material, const SimulationOptions& options)
+    : packing_(std::move(packing)), material_(material), options_(options), layout_(packing_),
+      state_(packing_, layout_), forces_(packing_, layout_, material, options.skin), box_(packing_.box) {
+  omp_set_num_threads(options.threads);
+}
+
+void Stepper::evaluate(const Evaluation& what) {
+  forces_.evaluate(state_, box_, what);
+  evaluated_volume_ = box_.volume();
+  for (Clamp& clamp : clamps_) {
+    apply_clamp(clamp, state_);
+  }
+  if (what.virial != Virial::none) {
+    sum_up();
+  }
+}
+
+void Stepper::evaluate_only() { evaluate({0.0, 0.0, Virial::full, residual_rate_}); }
+
+void Stepper::start() {
+  started_ = true;
+  // The dumped velocities are those of the full step: the sums must see them as they are.
+  evaluate({0.5 * options_.dt, 0.0, Virial::full, residual_rate_});
+}
+
+void Stepper::advance(Virial virial) {
+  drift();
+  evaluate({options_.dt, 0.5 * options_.dt, virial, residual_rate_});
+  ++step_;
+}
+
+void Stepper::drift() {
+  const double begin = omp_get_wtime();
+  kernels::Drift drift{};
+  drift.dt = options_.dt;
+  drift.mapped = position_map_ != Matrix3::Identity();
+  const Vector3 shift = box_.origin() - position_map_ * box_.origin();
+  const Vector3 residual = (residual_rate_ * box_.h_inverse()).row(0);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      drift.map[row][column] = position_map_(row, column);
+    }
+    drift.shift[row] = shift[row];
+    drift.residual[row] = residual[row];
+  }
+  drift.residual_shift = -residual.dot(box_.origin());
+
+  const std::vector<Block>& blocks = layout_.blocks();
+  std::vector<kernels::DriftResult> results(blocks.size());
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int b = 0; b < static_cast<int>(blocks.size()); ++b) {
+    results[b] = forces_.kernel_table().drift(state_.x.data() + blocks[b].offset, state_.v.data() + blocks[b].offset,
+                                              blocks[b].n_nodes, blocks[b].n_lanes, drift);
+  }
+  check_drift(results);
+  double speed2 = 0.0;
+  for (const kernels::DriftResult& result : results) {
+    speed2 = std::max(speed2, result.largest_speed2);
+  }
+  forces_.contact_list().note_motion(cell_map_, options_.dt * std::sqrt(speed2));
+  cell_map_.setIdentity();
+  position_map_.setIdentity();
+  integration_seconds_ += omp_get_wtime() - begin;
+}
+
+void Stepper::check_drift(const std::vector<kernels::DriftResult>& results) const {
+  const double limit = 0.5 * material_.diameter / options_.dt;
+  for (std::size_t b = 0; b < results.size(); ++b) {
+    if (!std::isfinite(results[b].checksum) || results[b].largest_speed2 > limit * limit) {
+      throw BlowUp(describe_fast_node(layout_.blocks()[b], state_, step_ + 1, options_.dt, material_));
+    }
+  }
+}
+
+void Stepper::sum_up() {
+  double virial = 0.0, kinetic = 0.0;
+  for (const GrainSums& grain : forces_.grain_sums()) { // grain by grain: the order is the packing's, whatever the threads
+    virial += grain.virial_trace;
+    kinetic += grain.kinetic_trace;
+  }
+  pressure_ = (virial + kinetic) / (3.0 * evaluated_volume_);
+  kinetic_energy_ = 0.5 * kinetic;
+}
+
+void Stepper::move_cell(const CellRates& rates) {
+  Matrix3 velocity_gradient = rates.dilation * Matrix3::Identity();
+  Matrix3 of_positions = velocity_gradient;
+  velocity_gradient(0, 1) = rates.shear;
+  if (rates.remap == Remap::positions) {
+    of_positions(0, 1) = rates.shear;
+  }
+  strain_ += rates.shear * options_.dt;
+  if (velocity_gradient != Matrix3::Zero()) {
+    cell_map_ = Matrix3::Identity() + options_.dt * velocity_gradient;
+    position_map_ = Matrix3::Identity() + options_.dt * of_positions;
+    box_.set_h(cell_map_ * box_.h());
+    // A periodic template's bonds name their images by the cell vectors it was made with: its cell is never flipped.
+    if (!forces_.has_periodic_template() && box_.flip()) {
+      forces_.contact_list().invalidate();
+    }
+  }
+  residual_rate_.setZero();
+  if (rates.remap == Remap::velocities) {
+    residual_rate_.row(0) = rates.shear * box_.h().row(1);
+  }
+}
+
+void Stepper::add_streaming(double rate, double sign) {
+  for (int g = 0; g < layout_.n_grains(); ++g) {
+    for (int node = 0; node < layout_.n_nodes(g); ++node) {
+      const double y = state_.x[layout_.index(g, node, 1)] - box_.origin()[1];
+      state_.v[layout_.index(g, node, 0)] += sign * rate * y;
+    }
+  }
+  residual_rate_.setZero();
+  if (sign > 0.0) {
+    residual_rate_.row(0) = rate * box_.h().row(1);
+  }
+}
+
+double Stepper::pressure_when_scaled(double factor) {
+  Packing scaled = packing_;
+  const Snapshot now = snapshot({});
+  Box box = now.box;
+  box.set_h(factor * box.h());
+  scaled.box = box;
+  for (std::size_t i = 0; i < now.position.size(); ++i) {
+    scaled.position[i] = box.origin() + factor * (now.position[i] - box.origin());
+    scaled.velocity[i].setZero();
+  }
+  ForceField forces(scaled, layout_, material_, 0.01);
+  LaneState state(scaled, layout_);
+  forces.evaluate(state, box, {0.0, 0.0, Virial::trace, Matrix3::Zero()});
+  double virial = 0.0;
+  for (const GrainSums& grain : forces.grain_sums()) {
+    virial += grain.virial_trace;
+  }
+  return virial / (3.0 * box.volume());
+}
+
+double Stepper::affine_bulk_modulus() {
+  const double step = 1e-5;
+  return -(pressure_when_scaled(1.0 + step) - pressure_when_scaled(1.0 - step)) / (6.0 * step);
+}
+
+double Stepper::sound_crossing(double bulk_modulus) const {
+  const double mass = static_cast<double>(packing_.position.size()) * material_.node_mass;
+  const double speed = std::sqrt(bulk_modulus * box_.volume() / mass);
+  return box_.lengths().minCoeff() / speed;
+}
+
+Timings Stepper::timings() const {
+  Timings timings;
+  timings.bonds = forces_.bond_seconds;
+  timings.contacts = forces_.contact_seconds;
+  timings.search = forces_.search_seconds;
+  timings.integration = integration_seconds_;
+  timings.steps = step_;
+  timings.list_builds = forces_.contact_list().n_builds();
+  return timings;
+}
+
+std::array<double, 2> Stepper::extent_z() const {
+  std::array<double, 2> extent = {1e300, -1e300};
+  for (int g = 0; g < layout_.n_grains(); ++g) {
+    for (int node = 0; node < layout_.n_nodes(g); ++node) {
+      const double z = state_.x[layout_.index(g, node, 2)];
+      extent = {std::min(extent[0], z), std::max(extent[1], z)};
+    }
+  }
+  return extent;
+}
+
+} // namespace boba

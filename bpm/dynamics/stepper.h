@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/dynamics/barostat.h"
+#include "bpm/dynamics/clamp.h"
+#include "bpm/dynamics/simulation.h"
+#include "bpm/forces/force_field.h"
+#include "bpm/packing/lane_layout.h"
+
+#include <vector>
+
+namespace boba {
+
+/// How the cell moves at the end of a step.
+struct CellRates {
+  double shear = 0.0;    ///< d(xy)/dt over the current Ly, 1/tau
+  Remap remap = Remap::positions;
+  double dilation = 0.0; ///< d ln L / dt of all three axes, 1/tau; always acts on positions
+};
+
+/// Advances a packing by velocity Verlet in its leapfrog form, one pass over the nodes a step:
+///
+///     v(n+1/2) = v(n-1/2) + dt/m f(n)          in the pass that computes f(n), node by node
+///     x(n+1)   = M(n) x(n) + dt v(n+1/2)       M(n): the cell's motion at the end of step n
+///
+/// The full-step velocity is v(n) = v(n+1/2) - dt/2m f(n). The map M is applied with the next drift; `snapshot`
+/// applies it to what it hands out, so that positions and cell of a snapshot belong together.
+/// Source: docs/notation.md, "Time".
+class Stepper {
+public:
+  Stepper(Packing packing, const Material& material, const SimulationOptions& options);
+
+  /// Forces at the start, and the half kick that turns full-step velocities into half-step ones. Once.
+  void start();
+  bool started() const { return started_; }
+  /// Forces and sums at the present state, which must not have started; nothing moves.
+  void evaluate_only();
+  /// Drift, forces, kick. The cell stands still; see move_cell.
+  void advance(Virial virial);
+  /// Moves the cell at the end of a step, flips it when it leans too far, and advances time and strain.
+  void move_cell(const CellRates& rates);
+  /// Adds (sign = 1) or removes (-1) the linear velocity profile of a shear that does not act on positions.
+  void add_streaming(double rate, double sign);
+
+  double pressure() const { return pressure_; }
+  double kinetic_energy() const { return kinetic_energy_; }
+  double bond_energy() const { return forces_.bond_energy(state_, box_); }
+  /// Bulk modulus of the packing under an affine change of volume, from two evaluations at +- 1e-5 in length (k/d).
+  double affine_bulk_modulus();
+  /// Time sound needs across the cell's shortest side, with the modulus above (tau).
+  double sound_crossing(double bulk_modulus) const;
+  Totals totals() const; ///< needs an evaluation with Virial::full
+  Snapshot snapshot(Simulation::Parts parts) const;
+  /// Smallest and largest z of any node, d.
+  std::array<double, 2> extent_z() const;
+
+  const Packing& packing() const { return packing_; }
+  const LaneLayout& layout() const { return layout_; }
+  const Box& box() const { return box_; }
+  const ForceField& forces() const { return forces_; }
+  ForceField& forces() { return forces_; }
+  const SimulationOptions& options() const { return options_; }
+  std::int64_t step() const { return step_; }
+  double time() const { return static_cast<double>(step_) * options_.dt; }
+  double strain() const { return strain_; }
+  double node_diameter() const { return material_.diameter; }
+  ForceField::Stretch largest_stretch() const { return forces_.largest_stretch(state_); }
+  std::vector<Clamp>& clamps() { return clamps_; }
+  void set_clamps(std::vector<Clamp> clamps) { clamps_ = std::move(clamps); }
+  /// All nodes with z in [low, high] as a clamp at rest.
+  Clamp nodes_between(double low, double high) const { return clamp_between(low, high, layout_, state_); }
+  /// Force of the material on the lower and the upper end (walls or clamps), positive when it pushes them apart, k d.
+  std::array<double, 2> end_forces() const;
+  double end_gap() const { return end_gap_; }
+  void set_end_gap(double gap) { end_gap_ = gap; }
+  Timings timings() const;
+
+  void save(SavedState& saved) const;
+  /// \throws std::runtime_error, std::out_of_range when the state belongs to another packing or lacks a number.
+  void restore(const SavedState& saved);
+
+private:
+  void save_ends(SavedState& saved) const;
+  void restore_ends(const SavedState& saved);
+  void drift();
+  void check_drift(const std::vector<kernels::DriftResult>& results) const;
+  void evaluate(const Evaluation& what);
+  void sum_up();
+  double pressure_when_scaled(double factor);
+
+  Packing packing_;
+  Material material_;
+  SimulationOptions options_;
+  LaneLayout layout_;
+  LaneState state_;
+  ForceField forces_;
+  Box box_;
+  std::vector<Clamp> clamps_;
+  double end_gap_ = 0.0; ///< between the ends of a pressed specimen, d
+  bool started_ = false;
+  std::int64_t step_ = 0;
+  double strain_ = 0.0;
+  Matrix3 cell_map_ = Matrix3::Identity();     ///< of the whole cell, at the end of the last step
+  Matrix3 position_map_ = Matrix3::Identity(); ///< the part of it that acts on positions, not yet applied
+  Matrix3 residual_rate_ = Matrix3::Zero();    ///< the rest, as a rate of the cell matrix
+  double evaluated_volume_ = 1.0;              ///< of the cell that the last forces belong to
+  double pressure_ = 0.0, kinetic_energy_ = 0.0;
+  double integration_seconds_ = 0.0, other_seconds_ = 0.0;
+};
+
+} // namespace boba

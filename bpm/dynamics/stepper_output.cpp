@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a stepper hands out and stores: totals, snapshots, saved states.
+#include "bpm/dynamics/stepper.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace boba {
+
+Totals Stepper::totals() const {
+  Totals totals;
+  for (const GrainSums& grain : forces_.grain_sums()) {
+    for (int c = 0; c < 6; ++c) {
+      totals.stress[c] -= (grain.virial[c] + grain.kinetic[c]) / evaluated_volume_;
+    }
+  }
+  totals.pressure = pressure_;
+  totals.kinetic_energy = kinetic_energy_;
+  totals.elastic_energy = bond_energy() + forces_.contact_totals().energy;
+  totals.largest_overlap = forces_.contact_totals().largest_overlap;
+  return totals;
+}
+
+Snapshot Stepper::snapshot(Simulation::Parts parts) const {
+  Snapshot snapshot;
+  snapshot.step = step_;
+  snapshot.time = time();
+  snapshot.strain = strain_;
+  snapshot.box = box_;
+  const Vector3 shift = box_.origin() - position_map_ * box_.origin();
+  const double back = started_ ? -0.5 * options_.dt / material_.node_mass : 0.0;
+  snapshot.position.reserve(packing_.position.size());
+  for (int g = 0; g < layout_.n_grains(); ++g) {
+    Vector3 centre = Vector3::Zero();
+    for (int node = 0; node < layout_.n_nodes(g); ++node) {
+      Vector3 x, v, f;
+      for (int c = 0; c < 3; ++c) {
+        const std::int64_t at = layout_.index(g, node, c);
+        x[c] = state_.x[at];
+        v[c] = state_.v[at];
+        f[c] = state_.f[at];
+      }
+      snapshot.position.push_back(position_map_ * x + shift);
+      centre += snapshot.position.back();
+      if (parts.velocity) {
+        snapshot.velocity.push_back(v + back * f);
+      }
+      if (parts.force) {
+        snapshot.force.push_back(f);
+      }
+    }
+    snapshot.grain_centre.push_back(centre / layout_.n_nodes(g));
+    const GrainSums& sums = forces_.grain_sums()[g];
+    std::array<double, 6> stress;
+    for (int c = 0; c < 6; ++c) {
+      stress[c] = -(sums.virial[c] + sums.kinetic[c]);
+    }
+    snapshot.grain_stress.push_back(stress);
+  }
+  return snapshot;
+}
+
+namespace {
+
+std::vector<double> flat(const Matrix3& m) { return {m.data(), m.data() + 9}; }
+
+Matrix3 matrix(const std::vector<double>& numbers) {
+  if (numbers.size() != 9) {
+    throw std::runtime_error("saved state: a matrix does not have nine numbers");
+  }
+  return Eigen::Map<const Matrix3>(numbers.data());
+}
+
+void copy_into(AlignedVector& to, const std::vector<double>& from, const char* name) {
+  if (from.size() != to.size()) {
+    throw std::runtime_error(std::string("saved state: ") + name + " belongs to another packing (" +
+                             std::to_string(from.size()) + " numbers, " + std::to_string(to.size()) + " expected)");
+  }
+  std::copy(from.begin(), from.end(), to.begin());
+}
+
+} // namespace
+
+void Stepper::save(SavedState& saved) const {
+  saved.real["x"] = {state_.x.begin(), state_.x.end()};
+  saved.real["v"] = {state_.v.begin(), state_.v.end()};
+  saved.real["f"] = {state_.f.begin(), state_.f.end()};
+  saved.real["box_h"] = flat(box_.h());
+  saved.real["cell_map"] = flat(cell_map_);
+  saved.real["position_map"] = flat(position_map_);
+  saved.real["residual_rate"] = flat(residual_rate_);
+  saved.real["scalars"] = {strain_, evaluated_volume_, pressure_, kinetic_energy_};
+  saved.integer["step"] = {step_};
+  saved.integer["started"] = {started_ ? 1 : 0};
+  save_ends(saved);
+}
+
+void Stepper::save_ends(SavedState& saved) const {
+  saved.real["end_gap"] = {end_gap_};
+  std::vector<double>& walls = saved.real["walls"];
+  for (const Wall& wall : forces_.walls()) {
+    for (const Vector3& vector : {wall.point, wall.normal, wall.velocity}) {
+      walls.insert(walls.end(), vector.data(), vector.data() + 3);
+    }
+    walls.push_back(wall.force);
+  }
+  saved.integer["clamp_count"] = {static_cast<std::int64_t>(clamps_.size())};
+  for (std::size_t k = 0; k < clamps_.size(); ++k) {
+    const std::string name = "clamp" + std::to_string(k);
+    saved.integer[name + "_first"] = clamps_[k].first;
+    saved.integer[name + "_stride"] = {clamps_[k].stride.begin(), clamps_[k].stride.end()};
+    saved.real[name] = {clamps_[k].velocity[0], clamps_[k].velocity[1], clamps_[k].velocity[2],
+                        clamps_[k].force[0],    clamps_[k].force[1],    clamps_[k].force[2]};
+  }
+}
+
+void Stepper::restore_ends(const SavedState& saved) {
+  end_gap_ = saved.real.at("end_gap").at(0);
+  const std::vector<double>& walls = saved.real.at("walls");
+  forces_.walls().clear();
+  for (std::size_t at = 0; at + 10 <= walls.size(); at += 10) {
+    const Eigen::Map<const Vector3> point(&walls[at]), normal(&walls[at + 3]), velocity(&walls[at + 6]);
+    forces_.walls().push_back({point, normal, velocity, walls[at + 9]});
+  }
+  clamps_.clear();
+  for (std::int64_t k = 0; k < saved.integer.at("clamp_count").at(0); ++k) {
+    const std::string name = "clamp" + std::to_string(k);
+    Clamp clamp;
+    clamp.first = saved.integer.at(name + "_first");
+    const std::vector<std::int64_t>& stride = saved.integer.at(name + "_stride");
+    clamp.stride.assign(stride.begin(), stride.end());
+    const std::vector<double>& numbers = saved.real.at(name);
+    clamp.velocity = {numbers.at(0), numbers.at(1), numbers.at(2)};
+    clamp.force = {numbers.at(3), numbers.at(4), numbers.at(5)};
+    clamps_.push_back(std::move(clamp));
+  }
+}
+
+std::array<double, 2> Stepper::end_forces() const {
+  if (clamps_.size() == 2) {
+    return {-clamps_[0].force[2], clamps_[1].force[2]};
+  }
+  if (forces_.walls().size() == 2) {
+    return {forces_.walls()[0].force, forces_.walls()[1].force};
+  }
+  return {0.0, 0.0};
+}
+
+void Stepper::restore(const SavedState& saved) {
+  copy_into(state_.x, saved.real.at("x"), "x");
+  copy_into(state_.v, saved.real.at("v"), "v");
+  copy_into(state_.f, saved.real.at("f"), "f");
+  box_.set_h(matrix(saved.real.at("box_h")));
+  cell_map_ = matrix(saved.real.at("cell_map"));
+  position_map_ = matrix(saved.real.at("position_map"));
+  residual_rate_ = matrix(saved.real.at("residual_rate"));
+  const std::vector<double>& scalars = saved.real.at("scalars");
+  strain_ = scalars.at(0);
+  evaluated_volume_ = scalars.at(1);
+  pressure_ = scalars.at(2);
+  kinetic_energy_ = scalars.at(3);
+  restore_ends(saved);
+  step_ = saved.integer.at("step").at(0);
+  started_ = saved.integer.at("started").at(0) != 0;
+  forces_.contact_list().invalidate();
+}
+
+} // namespace boba
