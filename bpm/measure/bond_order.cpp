@@ -3,9 +3,8 @@
 
 #include "bpm/measure/spherical_harmonics.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
+#include <fmt/format.h>
 #include <stdexcept>
 
 namespace boba::measure {
@@ -14,14 +13,14 @@ namespace {
 
 void check(const NeighbourLists& neighbours, const BondOrderOptions& options) {
   if (!(options.solid_bond_cosine > -1.0 && options.solid_bond_cosine < 1.0)) {
-    throw std::invalid_argument(fmt::format("bond order: solid_bond_cosine is {}; it must lie between -1 and 1",
-                                            options.solid_bond_cosine));
+    throw std::invalid_argument(
+        fmt::format("bond order: solid_bond_cosine is {}; it must lie between -1 and 1", options.solid_bond_cosine));
   }
   for (const auto& list : neighbours) {
     for (const Neighbour& neighbour : list) {
       if (neighbour.grain < 0 || neighbour.grain >= static_cast<int>(neighbours.size())) {
-        throw std::invalid_argument(fmt::format("bond order: a neighbour list names grain {} of {}", neighbour.grain,
-                                                neighbours.size()));
+        throw std::invalid_argument(
+            fmt::format("bond order: a neighbour list names grain {} of {}", neighbour.grain, neighbours.size()));
       }
     }
   }
@@ -47,7 +46,8 @@ template <int l> std::vector<Harmonics<l>> local_harmonics(const NeighbourLists&
 }
 
 /// Mean over the grain itself and its neighbours.
-template <int l> Harmonics<l> averaged(const std::vector<Harmonics<l>>& q, int grain, const NeighbourLists& neighbours) {
+template <int l>
+Harmonics<l> averaged(const std::vector<Harmonics<l>>& q, int grain, const NeighbourLists& neighbours) {
   Harmonics<l> mean = q[grain];
   for (const Neighbour& neighbour : neighbours[grain]) {
     for (std::size_t m = 0; m < mean.size(); ++m) {

@@ -5,11 +5,10 @@
 #include "bpm/measure/philox.h"
 #include "bpm/measure/point_grid.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <fmt/format.h>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
@@ -26,16 +25,16 @@ void check(const GrainNodes& grains, std::span<const ConvexHull> hulls, const Pa
         fmt::format("packing fraction: n_points is {}; it must be at least 1", options.n_points));
   }
   if (options.target_error && !(*options.target_error > 0.0 && *options.target_error < 0.5)) {
-    throw std::invalid_argument(fmt::format("packing fraction: target_error is {}; it must lie between 0 and 0.5",
-                                            *options.target_error));
+    throw std::invalid_argument(
+        fmt::format("packing fraction: target_error is {}; it must lie between 0 and 0.5", *options.target_error));
   }
   if (!(options.node_diameter >= 0.0) || !std::isfinite(options.node_diameter)) {
-    throw std::invalid_argument(fmt::format("packing fraction: node_diameter is {}; it must be zero or positive",
-                                            options.node_diameter));
+    throw std::invalid_argument(
+        fmt::format("packing fraction: node_diameter is {}; it must be zero or positive", options.node_diameter));
   }
   if (!hulls.empty() && static_cast<int>(hulls.size()) != grains.n_grains()) {
-    throw std::invalid_argument(
-        fmt::format("packing fraction: {} hulls for {} grains; give one a grain or none", hulls.size(), grains.n_grains()));
+    throw std::invalid_argument(fmt::format("packing fraction: {} hulls for {} grains; give one a grain or none",
+                                            hulls.size(), grains.n_grains()));
   }
 }
 

@@ -16,8 +16,8 @@ namespace boba::measure {
 
 namespace {
 
-constexpr int lanes = 8;            ///< doubles of one 512-bit register
-constexpr int registers = 4;        ///< groups held in registers at once, to hide the latency of the products
+constexpr int lanes = 8;     ///< doubles of one 512-bit register
+constexpr int registers = 4; ///< groups held in registers at once, to hide the latency of the products
 constexpr int group = lanes * registers;
 
 typedef double Lanes __attribute__((vector_size(lanes * sizeof(double)), aligned(alignof(double)), may_alias));

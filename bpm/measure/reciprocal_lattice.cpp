@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/reciprocal_lattice.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <numbers>
 #include <stdexcept>
 
@@ -18,7 +17,9 @@ std::pair<int, int> integers_within(double offset, double step, double reach) {
   return {static_cast<int>(std::ceil((-reach - offset) / step)), static_cast<int>(std::floor((reach - offset) / step))};
 }
 
-double leg(double hypotenuse, double other) { return std::sqrt(std::max(0.0, hypotenuse * hypotenuse - other * other)); }
+double leg(double hypotenuse, double other) {
+  return std::sqrt(std::max(0.0, hypotenuse * hypotenuse - other * other));
+}
 
 } // namespace
 
@@ -31,8 +32,10 @@ ReciprocalLattice::ReciprocalLattice(const Box& box, double q_max) {
   }
   const double expected = box.volume() * q_max * q_max * q_max / (12.0 * std::numbers::pi * std::numbers::pi);
   if (expected > 2e9) {
-    throw std::invalid_argument(fmt::format("scattering: q_max = {} / d means {:.3g} wave vectors in this box; lower it "
-                                            "so that there are fewer than 2e9", q_max, expected));
+    throw std::invalid_argument(
+        fmt::format("scattering: q_max = {} / d means {:.3g} wave vectors in this box; lower it "
+                    "so that there are fewer than 2e9",
+                    q_max, expected));
   }
   b_ = 2.0 * std::numbers::pi * box.h_inverse().transpose();
   // h is upper triangular, so b is lower triangular: q_x depends on n1 alone, q_y on n1 and n2.

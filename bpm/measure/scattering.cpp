@@ -4,10 +4,9 @@
 #include "bpm/measure/parallel_loop.h"
 #include "bpm/measure/phase_sums.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <complex>
+#include <fmt/format.h>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -98,8 +97,8 @@ std::vector<ScatteringShell> shell_average(const Box& box, const ReciprocalLatti
     shell.q /= n;
     shell.intensity /= n;
     shell.form_factor /= n;
-    shell.structure = shell.form_factor > 0.0 ? shell.intensity / shell.form_factor
-                                              : std::numeric_limits<double>::quiet_NaN();
+    shell.structure =
+        shell.form_factor > 0.0 ? shell.intensity / shell.form_factor : std::numeric_limits<double>::quiet_NaN();
     shell.n_vectors *= 2; // the other half of the lattice
     averaged.push_back(shell);
   }

@@ -15,11 +15,11 @@ struct ScatteringOptions {
 
 /// Averages over the wave vectors with |q| nearest to a multiple of the shell width.
 struct ScatteringShell {
-  double q = 0.0;              ///< mean |q|, 1/d
-  std::int64_t n_vectors = 0;  ///< wave vectors in the shell, q and -q both counted
-  double intensity = 0.0;      ///< I: 1/N |sum over all nodes of exp(i q.r)|^2, mean of the shell
-  double form_factor = 0.0;    ///< P_F: mean over grains of 1/N_k |sum over its nodes of exp(i q.r)|^2, mean of the shell
-  double structure = 0.0;      ///< S = I / P_F; not a number where P_F is 0
+  double q = 0.0;             ///< mean |q|, 1/d
+  std::int64_t n_vectors = 0; ///< wave vectors in the shell, q and -q both counted
+  double intensity = 0.0;     ///< I: 1/N |sum over all nodes of exp(i q.r)|^2, mean of the shell
+  double form_factor = 0.0; ///< P_F: mean over grains of 1/N_k |sum over its nodes of exp(i q.r)|^2, mean of the shell
+  double structure = 0.0;   ///< S = I / P_F; not a number where P_F is 0
 };
 
 /// I and P_F at every wave vector of `lattice`, in its order.

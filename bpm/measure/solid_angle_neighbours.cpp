@@ -2,9 +2,8 @@
 #include "bpm/measure/neighbours.h"
 #include "bpm/measure/point_grid.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <limits>
 #include <stdexcept>
 
@@ -19,7 +18,8 @@ struct Candidate {
   bool operator<(const Candidate& other) const { return distance < other.distance; }
 };
 
-/// The smallest m that satisfies the rule among sorted candidates that are complete up to `reach`; 0 when there is none.
+/// The smallest m that satisfies the rule among sorted candidates that are complete up to `reach`; 0 when there is
+/// none.
 std::size_t solid_angle_number(const std::vector<Candidate>& sorted, double reach) {
   double sum = 0.0;
   for (std::size_t m = 1; m <= sorted.size(); ++m) {

@@ -10,7 +10,9 @@ namespace boba::measure {
 
 namespace {
 
-double factorial(int n) { return std::tgamma(n + 1.0); }
+double factorial(int n) {
+  return std::tgamma(n + 1.0);
+}
 
 /// The 3j symbols of one degree, [m1 + l][m2 + l]; computed once.
 template <int l> const std::vector<double>& table_3j() {

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/neighbours.h"
 
-#include <fmt/format.h>
-#include <voro++/voro++.hh>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <voro++/voro++.hh>
 
 namespace boba::measure {
 
@@ -22,9 +21,8 @@ void check(const Box& box, std::span<const Vector3> centres, std::span<const dou
     throw std::invalid_argument("Voronoi neighbours: the box must be periodic in all three directions");
   }
   if (centres.empty() || centres.size() != radii.size()) {
-    throw std::invalid_argument(
-        fmt::format("Voronoi neighbours: {} centres and {} radii; there must be one radius a grain", centres.size(),
-                    radii.size()));
+    throw std::invalid_argument(fmt::format(
+        "Voronoi neighbours: {} centres and {} radii; there must be one radius a grain", centres.size(), radii.size()));
   }
   for (std::size_t i = 0; i < centres.size(); ++i) {
     if (!centres[i].allFinite() || !(radii[i] >= 0.0) || !std::isfinite(radii[i])) {
@@ -111,8 +109,8 @@ NeighbourLists voronoi_neighbours(const Box& box, std::span<const Vector3> centr
       }
       const Vector3 normal = Eigen::Map<const Vector3>(&normals[3 * f]);
       const double distance = normal.dot(Eigen::Map<const Vector3>(&vertices[3 * face_vertices[at + 1]]));
-      const Vector3 vector = image_across(reduced, centres[ids[f]] - centres[grain], radii[grain], radii[ids[f]],
-                                          normal, distance);
+      const Vector3 vector =
+          image_across(reduced, centres[ids[f]] - centres[grain], radii[grain], radii[ids[f]], normal, distance);
       lists[grain].push_back({ids[f], vector, areas[f]});
     }
   });

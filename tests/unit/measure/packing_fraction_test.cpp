@@ -4,11 +4,10 @@
 #include "bpm/measure/point_grid.h"
 #include "tests/unit/measure/shapes.h"
 
-#include <gtest/gtest.h>
-#include <omp.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 #include <numeric>
+#include <omp.h>
 #include <stdexcept>
 
 namespace {

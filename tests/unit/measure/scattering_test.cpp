@@ -3,11 +3,10 @@
 #include "bpm/measure/scattering.h"
 #include "tests/unit/measure/shapes.h"
 
-#include <gtest/gtest.h>
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
+#include <gtest/gtest.h>
+#include <omp.h>
 #include <set>
 #include <stdexcept>
 
