@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/packing/insertion.h"
+
+#include "bpm/grain/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+
+namespace boba {
+
+namespace {
+
+/// Share of space that the bounding spheres may take: random arrangements jam at about 0.64, and come to rest slowly
+/// just below.
+constexpr double densest = 0.60;
+constexpr int most_sweeps = 10000;
+constexpr double inflation = 1e-3; ///< the spheres that are pushed apart are a little larger than the real ones
+
+double sphere_volume(double radius) {
+  return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+}
+
+/// Overlaps of spheres in a periodic cube, found with a cell grid (or all images in a cube of few cells).
+class SphereOverlaps {
+public:
+  SphereOverlaps(const std::vector<double>& radii, double edge) : radii_(radii), edge_(edge) {
+    largest_ = *std::max_element(radii.begin(), radii.end()) * (1.0 + inflation);
+    cells_ = static_cast<int>(std::min(edge / (2.0 * largest_), 128.0));
+  }
+
+  /// Half the sum of each sphere's overlaps along the lines of centres; returns the largest relative overlap.
+  double push(const std::vector<Vector3>& x, std::vector<Vector3>& move) {
+    std::fill(move.begin(), move.end(), Vector3::Zero());
+    worst_ = 0.0;
+    if (cells_ < 3) {
+      push_all_images(x, move);
+    } else {
+      push_grid(x, move);
+    }
+    return worst_;
+  }
+
+private:
+  void push_pair(std::size_t i, std::size_t j, const Vector3& difference, std::vector<Vector3>& move) {
+    const double reach = (radii_[i] + radii_[j]) * (1.0 + inflation);
+    const double r2 = difference.squaredNorm();
+    if (r2 < reach * reach && r2 > 0.0) {
+      const double r = std::sqrt(r2);
+      const Vector3 half = 0.5 * (reach - r) / r * difference;
+      move[i] += half;
+      move[j] -= half;
+      worst_ = std::max(worst_, (reach - r) / reach);
+    }
+  }
+
+  void push_all_images(const std::vector<Vector3>& x, std::vector<Vector3>& move) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      for (std::size_t j = i + 1; j < x.size(); ++j) {
+        for (int image = 0; image < 27; ++image) {
+          const Vector3 shift(image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1);
+          push_pair(i, j, x[i] - x[j] + edge_ * shift, move);
+        }
+      }
+    }
+  }
+
+  int cell_of(const Vector3& x, int axis) const {
+    return std::min(static_cast<int>(x[axis] / edge_ * cells_), cells_ - 1);
+  }
+
+  void push_grid(const std::vector<Vector3>& x, std::vector<Vector3>& move) {
+    const auto n = static_cast<std::size_t>(cells_);
+    first_.assign(n * n * n, -1);
+    next_.assign(x.size(), -1);
+    for (std::size_t i = x.size(); i-- > 0;) {
+      const std::size_t cell = (cell_of(x[i], 2) * n + cell_of(x[i], 1)) * n + cell_of(x[i], 0);
+      next_[i] = first_[cell];
+      first_[cell] = static_cast<int>(i);
+    }
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      for (int neighbour = 0; neighbour < 27; ++neighbour) {
+        Vector3 shift = Vector3::Zero();
+        std::size_t cell = 0;
+        for (int axis = 2; axis >= 0; --axis) {
+          const int offset = axis == 0 ? neighbour % 3 - 1 : axis == 1 ? neighbour / 3 % 3 - 1 : neighbour / 9 - 1;
+          const int c = cell_of(x[i], axis) + offset;
+          shift[axis] = c < 0 ? edge_ : c >= cells_ ? -edge_ : 0.0;
+          cell = cell * n + static_cast<std::size_t>((c + cells_) % cells_);
+        }
+        for (int j = first_[cell]; j >= 0; j = next_[j]) {
+          if (static_cast<std::size_t>(j) > i) {
+            push_pair(i, j, x[i] - x[j] + shift, move);
+          }
+        }
+      }
+    }
+  }
+
+  const std::vector<double>& radii_;
+  double edge_;
+  double largest_ = 0.0;
+  int cells_ = 0;
+  double worst_ = 0.0;
+  std::vector<int> first_, next_;
+};
+
+void wrap(Vector3& x, double edge) {
+  for (int axis = 0; axis < 3; ++axis) {
+    x[axis] -= edge * std::floor(x[axis] / edge);
+    if (x[axis] >= edge) { // a tiny negative coordinate rounds up to the edge
+      x[axis] = 0.0;
+    }
+  }
+}
+
+double reference_volume_of(const Insertion& insertion) {
+  double volume = 0.0;
+  for (const Grain& grain : insertion.grains) {
+    volume += insertion.templates[grain.template_index]->reference_volume;
+  }
+  return volume;
+}
+
+void check_density(const Insertion& insertion, const std::vector<double>& radii, double edge) {
+  double spheres = 0.0;
+  for (const double radius : radii) {
+    spheres += sphere_volume(radius);
+  }
+  const double share = spheres / (edge * edge * edge);
+  if (share > densest) {
+    throw std::invalid_argument(fmt::format("insert: at packing_fraction = {:g} the grains' bounding spheres (radius "
+                                            "to the outermost node plus d/2) would fill "
+                                            "{:.3f} of the cell; random placement reaches {:.2f}. Allowed for these "
+                                            "grains: at most {:.3f}; compress afterwards",
+                                            insertion.packing_fraction, share, densest,
+                                            insertion.packing_fraction * densest / share));
+  }
+}
+
+} // namespace
+
+double bounding_radius(const GrainTemplate& grain, double diameter) {
+  double largest = 0.0;
+  for (const Vector3& x : grain.position) {
+    largest = std::max(largest, x.norm());
+  }
+  return largest + 0.5 * diameter;
+}
+
+std::vector<Vector3> place_spheres(const std::vector<double>& radii, double edge, Random& random) {
+  std::vector<Vector3> x(radii.size());
+  for (Vector3& centre : x) {
+    for (int axis = 0; axis < 3; ++axis) {
+      centre[axis] = edge * random.uniform();
+    }
+  }
+  if (radii.empty()) {
+    return x;
+  }
+  // Each sphere moves by a share of its overlaps and keeps part of its last move; the share keeps a sphere with the
+  // twelve neighbours it can have from overshooting.
+  constexpr double share = 0.25, memory = 0.8;
+  SphereOverlaps overlaps(radii, edge);
+  std::vector<Vector3> push(radii.size()), last(radii.size(), Vector3::Zero());
+  double worst = 1.0;
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    worst = overlaps.push(x, push);
+    if (worst < 0.5 * inflation) {
+      return x;
+    }
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      last[i] = memory * last[i] + share * push[i];
+      x[i] += last[i];
+      wrap(x[i], edge);
+    }
+  }
+  throw std::runtime_error(fmt::format("insert: {} grains still overlap by {:.2g} of their size after {} sweeps; "
+                                       "use a smaller packing_fraction",
+                                       radii.size(), worst, most_sweeps));
+}
+
+Eigen::Quaterniond random_rotation(Random& random) {
+  const double u = random.uniform();
+  const double a = 2.0 * std::numbers::pi * random.uniform();
+  const double b = 2.0 * std::numbers::pi * random.uniform();
+  const double small = std::sqrt(1.0 - u), large = std::sqrt(u);
+  return {large * std::cos(b), small * std::sin(a), small * std::cos(a), large * std::sin(b)};
+}
+
+Packing insert_at_random(const Insertion& insertion) {
+  if (insertion.grains.empty() || !(insertion.packing_fraction > 0.0)) {
+    throw std::invalid_argument(fmt::format("insert: {} grains at packing_fraction = {}; both must be positive",
+                                            insertion.grains.size(), insertion.packing_fraction));
+  }
+  const double edge = std::cbrt(reference_volume_of(insertion) / insertion.packing_fraction);
+  std::vector<double> radii;
+  for (const Grain& grain : insertion.grains) {
+    radii.push_back(bounding_radius(*insertion.templates[grain.template_index], insertion.diameter));
+  }
+  check_density(insertion, radii, edge);
+  Random random(insertion.seed);
+  const std::vector<Vector3> centres = place_spheres(radii, edge, random);
+  std::vector<Placement> placements;
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    const Eigen::Quaterniond rotation = insertion.rotate ? random_rotation(random) : Eigen::Quaterniond::Identity();
+    placements.push_back({insertion.grains[i], centres[i], rotation});
+  }
+  return make_packing(Box(Vector3::Zero(), Vector3::Constant(edge)), insertion.templates, placements);
+}
+
+} // namespace boba

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/io/input_error.h"
+#include "bpm/scene/scene.h"
+#include "bpm/scene/scene_stages.h"
+#include "bpm/scene/scene_table.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <set>
+#include <thread>
+
+namespace boba {
+
+namespace {
+
+AlphaChoice read_alpha(const SceneTable& table, bool needed) {
+  const AlphaChoice choice{table.maybe_real("alpha"), table.maybe_real("poisson")};
+  if (choice.alpha && choice.poisson) {
+    table.fail("poisson", "is given together with alpha; give one of them");
+  }
+  if (needed && !choice.alpha && !choice.poisson) {
+    table.fail("alpha", "is missing; give alpha (k d) or poisson");
+  }
+  return choice;
+}
+
+void read_run(const SceneTable& table, Scene& scene) {
+  scene.options.dt = table.real("dt", scene.options.dt);
+  scene.options.skin = table.real("skin", scene.options.skin);
+  const auto threads = static_cast<int>(table.integer("threads", 0));
+  scene.options.threads = threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  scene.wall_time = table.maybe_real("wall_time");
+}
+
+OutputInterval read_interval(const SceneTable& table) {
+  return {table.maybe_real("every_strain"), table.maybe_real("every_time")};
+}
+
+std::optional<FrameOutput> read_frames(const SceneTables& tables, const std::string& path) {
+  if (!tables.present.at(path)) {
+    return std::nullopt;
+  }
+  const SceneTable& table = tables.table(path);
+  return FrameOutput{read_interval(table), table.boolean("velocities", false)};
+}
+
+OutputPlan read_output(const SceneTables& tables, const std::filesystem::path& scene_path) {
+  OutputPlan plan;
+  const SceneTable& output = tables.table("output");
+  plan.directory = output.text("directory", (std::filesystem::path("out") / scene_path.stem()).string());
+  const bool climbs = std::find(plan.directory.begin(), plan.directory.end(), "..") != plan.directory.end();
+  if (plan.directory.empty() || plan.directory.is_absolute() || climbs ||
+      plan.directory.string().find('\0') != std::string::npos) {
+    output.fail("directory", "must be a relative path without \"..\"; the command line's --output may name any folder");
+  }
+  plan.table = read_interval(tables.table("output.table"));
+  if (!plan.table.strain && !plan.table.time) {
+    plan.table = {0.01, 100.0};
+  }
+  plan.trajectory = read_frames(tables, "output.trajectory");
+  plan.dump = read_frames(tables, "output.dump");
+  plan.vtk = read_frames(tables, "output.vtk");
+  const SceneTable& checkpoint = tables.table("output.checkpoint");
+  plan.checkpoint_seconds = checkpoint.real("every_seconds", plan.checkpoint_seconds);
+  plan.checkpoint_time = checkpoint.maybe_real("every_time");
+  return plan;
+}
+
+/// Keys that mean nothing for the template's shape are mistakes, not decoration.
+void check_shape_keys(const SceneTable& table, TemplateSpec::Shape shape) {
+  using Shape = TemplateSpec::Shape;
+  const auto only_for = [&](const std::string& key, bool allowed, const std::string& shapes) {
+    if (table.has(key) && !allowed) {
+      table.fail(key, "belongs to " + shapes + ", not to a " + to_string(shape));
+    }
+  };
+  const bool is_box = shape == Shape::box || shape == Shape::periodic_box;
+  only_for("radius", !is_box, "a sphere or a cylinder");
+  only_for("height", shape == Shape::cylinder, "a cylinder");
+  only_for("size", is_box, "a box or a periodic_box");
+  only_for("surface", shape != Shape::periodic_box, "a grain with a surface");
+  if (shape == Shape::sphere && table.has("radius") && table.has("nodes")) {
+    table.fail("nodes", "is given together with radius; a sphere takes one of them");
+  }
+}
+
+SceneTemplate read_template(const SceneTable& table) {
+  SceneTemplate result;
+  result.name = table.text("name", "");
+  TemplateSpec& spec = result.spec;
+  spec.shape = shape_from_string(table.text("shape", "sphere"));
+  check_shape_keys(table, spec.shape);
+  spec.surface = surface_from_string(table.text("surface", "cut"));
+  spec.radius = table.real("radius", spec.radius);
+  spec.height = table.real("height", spec.height);
+  const std::vector<double> size = table.vector("size", {20.0, 20.0, 20.0});
+  spec.size = {size[0], size[1], size[2]};
+  if (const auto nodes = table.maybe_integer("nodes")) {
+    spec.n_nodes = static_cast<int>(*nodes);
+  }
+  spec.seed = static_cast<std::uint64_t>(table.integer("seed", 1));
+  try {
+    validate(spec);
+  } catch (const std::invalid_argument& error) {
+    table.fail("name", fmt::format("cannot be made: {}", error.what()));
+  }
+  return result;
+}
+
+void read_templates(const SceneTables& tables, Scene& scene) {
+  std::set<std::string> names;
+  for (const SceneTable& table : tables.list("template")) {
+    scene.templates.push_back(read_template(table));
+    const std::string& name = scene.templates.back().name;
+    if (name.empty() || !names.insert(name).second) {
+      table.fail("name", "must be a text that no other template has");
+    }
+  }
+}
+
+int template_of_species(const SceneTable& table, const Scene& scene) {
+  std::vector<std::string> names;
+  for (const SceneTemplate& t : scene.templates) {
+    names.push_back(t.name);
+  }
+  if (names.empty()) {
+    table.fail("template", "names nothing: the scene has no [[template]]");
+  }
+  if (!table.has("template")) {
+    if (names.size() > 1) {
+      table.fail("template", "is missing; the scene has more than one template");
+    }
+    return 0;
+  }
+  const std::string wanted = table.text("template", "");
+  const auto at = std::find(names.begin(), names.end(), wanted);
+  if (at == names.end()) {
+    table.fail("template",
+               fmt::format("there is no such [[template]]; the scene has \"{}\"", fmt::join(names, "\", \"")));
+  }
+  return static_cast<int>(at - names.begin());
+}
+
+void read_species(const SceneTables& tables, Scene& scene) {
+  for (const SceneTable& table : tables.list("species")) {
+    SceneSpecies species;
+    species.name = table.text("name", fmt::format("species {}", scene.species.size()));
+    species.template_index = template_of_species(table, scene);
+    species.count = table.integer("count", 0);
+    species.material = read_alpha(table, true);
+    scene.species.push_back(species);
+  }
+}
+
+std::filesystem::path input_file(const SceneTable& table, const std::string& key, const Scene& scene, bool must_exist) {
+  const std::filesystem::path path = scene.path.parent_path() / table.text(key, "");
+  std::error_code error;
+  if (must_exist && !std::filesystem::is_regular_file(path, error)) {
+    table.fail(key, fmt::format("there is no such file ({})", path.lexically_normal().string()));
+  }
+  return path;
+}
+
+void read_file_start(const SceneTables& tables, Scene& scene, bool must_exist) {
+  const SceneTable& table = tables.table("start");
+  for (const char* unused : {"template", "species"}) {
+    if (!tables.list(unused).empty()) {
+      tables.list(unused).front().fail("name", "has no use: the grains come from the files of [start]");
+    }
+  }
+  if (table.has("lammps_reference") == table.has("trajectory")) {
+    table.fail("lammps_reference", "or start.trajectory must be given, and not both");
+  }
+  const auto frame = static_cast<int>(table.integer("frame", -1));
+  const AlphaChoice material = read_alpha(table, false);
+  if (table.has("trajectory")) {
+    if (table.has("lammps_state")) {
+      table.fail("lammps_state", "has no meaning with a trajectory");
+    }
+    scene.start = TrajectoryStart{input_file(table, "trajectory", scene, must_exist), frame, material};
+    return;
+  }
+  LammpsStart start{input_file(table, "lammps_reference", scene, must_exist), std::nullopt, frame, material};
+  if (table.has("lammps_state")) {
+    start.state = input_file(table, "lammps_state", scene, must_exist);
+  }
+  scene.start = start;
+}
+
+void read_start(const SceneTables& tables, Scene& scene, bool must_exist) {
+  const std::vector<SceneTable>& stages = tables.list("stage");
+  if (tables.present.at("start")) {
+    read_file_start(tables, scene, must_exist);
+    return;
+  }
+  const std::string first = stages.empty() ? "" : stages.front().kind();
+  if (first == "insert") {
+    scene.start = InsertStart{stages.front().real("packing_fraction", 0.4), stages.front().boolean("rotate", true)};
+  } else if (first == "specimen") {
+    scene.start = SpecimenStart{stages.front().real("margin", 5.0)};
+  } else {
+    throw InputError(fmt::format("{}: the first stage must be \"insert\" or \"specimen\", or the scene needs a [start] "
+                                 "that names files",
+                                 scene.path.string()));
+  }
+  if (scene.species.empty()) {
+    throw InputError(fmt::format("{}: no [[species]]: a scene names its grains, for example "
+                                 "[[species]] template = \"grain\", count = 64, alpha = 2.0",
+                                 scene.path.string()));
+  }
+  if (first == "specimen" && (scene.species.size() > 1 || scene.species.front().count > 1)) {
+    stages.front().fail("type", "takes one species with count = 1");
+  }
+}
+
+Scene read_tree(const std::string& text, const std::filesystem::path& path, const std::vector<std::string>& overrides,
+                bool must_exist) {
+  Scene scene;
+  scene.path = path;
+  scene.text = text;
+  scene.overrides = overrides;
+  TomlNode tree = parse_toml(text, path.string());
+  for (const std::string& assignment : overrides) {
+    apply_override(tree, assignment);
+  }
+  const SceneTables tables(std::move(tree), path.string());
+  scene.title = tables.table("").text("title", path.stem().string());
+  scene.seed = static_cast<std::uint64_t>(tables.table("").integer("seed", 1));
+  read_run(tables.table("run"), scene);
+  scene.output = read_output(tables, path);
+  const SceneTable& material = tables.table("material");
+  scene.material.k = material.real("k", scene.material.k);
+  scene.material.gamma = material.real("gamma", scene.material.gamma);
+  scene.material.k3 = material.real("k3", scene.material.k3);
+  read_templates(tables, scene);
+  read_species(tables, scene);
+  read_start(tables, scene, must_exist);
+  scene.stages = read_stages(tables, scene);
+  return scene;
+}
+
+} // namespace
+
+Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  return read_tree(read_text_file(path), path, overrides, true);
+}
+
+Scene read_stored_scene(const std::string& text, const std::filesystem::path& path,
+                        const std::vector<std::string>& overrides) {
+  return read_tree(text, path, overrides, false);
+}
+
+} // namespace boba

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/scene/scene_table.h"
+
+#include "bpm/io/input_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <set>
+
+namespace boba {
+
+namespace {
+
+using Kind = TomlNode::Kind;
+
+std::string dotted(const std::string& table, const std::string& key) {
+  return table.empty() ? key : table + "." + key;
+}
+
+bool is_number(const TomlNode& node) {
+  return node.kind == Kind::integer || node.kind == Kind::real;
+}
+
+double number(const TomlNode& node) {
+  return node.kind == Kind::integer ? static_cast<double>(node.integer) : node.real;
+}
+
+bool in_range(const SceneKey& key, double value) {
+  return std::isfinite(value) && value <= key.highest && (key.above_lowest ? value > key.lowest : value >= key.lowest);
+}
+
+/// The value if the key allows it.
+std::optional<SceneValue> checked(const SceneKey& key, const TomlNode& node) {
+  using Type = SceneKey::Type;
+  switch (key.type) {
+  case Type::boolean:
+    return node.kind == Kind::boolean ? std::optional<SceneValue>(node.boolean) : std::nullopt;
+  case Type::integer:
+    return node.kind == Kind::integer && in_range(key, number(node)) ? std::optional<SceneValue>(node.integer)
+                                                                     : std::nullopt;
+  case Type::real:
+    return is_number(node) && in_range(key, number(node)) ? std::optional<SceneValue>(number(node)) : std::nullopt;
+  case Type::text:
+    return node.kind == Kind::text ? std::optional<SceneValue>(node.text) : std::nullopt;
+  case Type::choice:
+    return node.kind == Kind::text && std::find(key.choices.begin(), key.choices.end(), node.text) != key.choices.end()
+               ? std::optional<SceneValue>(node.text)
+               : std::nullopt;
+  case Type::vector3: {
+    const auto good = [&key](const TomlNode& item) { return is_number(item) && in_range(key, number(item)); };
+    if (node.kind != Kind::array || node.items.size() != 3 ||
+        !std::all_of(node.items.begin(), node.items.end(), good)) {
+      return std::nullopt;
+    }
+    return std::vector<double>{number(node.items[0]), number(node.items[1]), number(node.items[2])};
+  }
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void fail_unknown(const TomlNode& node, const std::string& name, const std::string& key,
+                               const std::vector<std::string>& known) {
+  const std::string near = nearest_word(key, known);
+  const std::string advice = near.empty() ? "" : fmt::format(" Did you mean \"{}\"?", near);
+  const std::string list = known.empty() ? "no keys" : fmt::format("{}", fmt::join(known, ", "));
+  throw InputError(fmt::format("{}: {} = {}: there is no such key.{} Allowed here: {}", node.place, dotted(name, key),
+                               node.shown, advice, list));
+}
+
+/// Names of the tables directly inside the table `path` ("output" -> "table", ...).
+std::vector<std::string> inner_tables(const std::string& path) {
+  std::set<std::string> names;
+  const std::string prefix = path.empty() ? "" : path + ".";
+  for (const SceneSection& section : scene_schema()) {
+    if (section.path.size() > prefix.size() && section.path.starts_with(prefix)) {
+      names.insert(section.path.substr(prefix.size(), section.path.find('.', prefix.size()) - prefix.size()));
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
+const TomlNode* node_at(const TomlNode& root, const std::string& path) {
+  const TomlNode* node = &root;
+  for (std::size_t begin = 0; node != nullptr && begin < path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    node = node->find(path.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return node;
+}
+
+/// The section of a repeated table that its `type` selects.
+const SceneSection& section_of_entry(const std::string& path, const std::string& name, const TomlNode& entry) {
+  std::vector<std::string> kinds;
+  const TomlNode* type = entry.find("type");
+  for (const SceneSection& section : scene_schema()) {
+    if (section.path == path) {
+      if (section.kind.empty() || (type != nullptr && type->kind == Kind::text && type->text == section.kind)) {
+        return section;
+      }
+      kinds.push_back(section.kind);
+    }
+  }
+  if (type == nullptr) {
+    throw InputError(
+        fmt::format("{}: {}.type is missing; it must be one of \"{}\"", entry.place, name, fmt::join(kinds, "\", \"")));
+  }
+  const std::string near = nearest_word(type->text, kinds);
+  throw InputError(fmt::format("{}: {}.type = {}: must be one of \"{}\".{}", type->place, name, type->shown,
+                               fmt::join(kinds, "\", \""), near.empty() ? "" : " Did you mean \"" + near + "\"?"));
+}
+
+} // namespace
+
+SceneTable::SceneTable(const SceneSection& section, std::string name, const TomlNode* node, const std::string& file)
+    : section_(&section), name_(std::move(name)), node_(node), file_(file) {
+  if (node == nullptr) {
+    return;
+  }
+  if (node->kind != Kind::table) {
+    throw InputError(fmt::format("{}: {} = {}: must be a table, [{}]", node->place, name_, node->shown, section.path));
+  }
+  std::vector<std::string> inner = section.repeated ? std::vector<std::string>() : inner_tables(section.path);
+  for (const auto& [key_name, value] : node->members) {
+    const SceneKey* key = section.find(key_name);
+    const bool is_type = !section.kind.empty() && key_name == "type";
+    if (is_type || std::find(inner.begin(), inner.end(), key_name) != inner.end()) {
+      continue;
+    }
+    if (key == nullptr) {
+      std::vector<std::string> known = inner;
+      for (const SceneKey& other : section.keys) {
+        known.push_back(other.name);
+      }
+      fail_unknown(value, name_, key_name, known);
+    }
+    const std::optional<SceneValue> good = checked(*key, value);
+    if (!good) {
+      throw InputError(
+          fmt::format("{}: {} = {}: must be {}", value.place, dotted(name_, key_name), value.shown, key->allowed()));
+    }
+    values_.emplace(key_name, *good);
+  }
+  for (const SceneKey& key : section.keys) {
+    if (key.required && !has(key.name)) {
+      fail(key.name, "is missing; it must be " + key.allowed());
+    }
+  }
+}
+
+void SceneTable::fail(const std::string& key, const std::string& message) const {
+  const TomlNode* value = node_ == nullptr ? nullptr : node_->find(key);
+  if (value != nullptr) {
+    throw InputError(fmt::format("{}: {} = {}: {}", value->place, dotted(name_, key), value->shown, message));
+  }
+  throw InputError(fmt::format("{}: {} {}", node_ == nullptr ? file_ : node_->place, dotted(name_, key), message));
+}
+
+SceneTables::SceneTables(TomlNode tree, const std::string& file) : root(std::move(tree)) {
+  for (const SceneSection& section : scene_schema()) {
+    if (tables.contains(section.path)) {
+      continue; // another `type` of a repeated table, handled with the first
+    }
+    std::vector<SceneTable>& made = tables[section.path];
+    const TomlNode* node = section.path.empty() ? &root : node_at(root, section.path);
+    present[section.path] = node != nullptr;
+    if (!section.repeated) {
+      made.emplace_back(section, section.path, node, file);
+      continue;
+    }
+    if (node != nullptr && node->kind != Kind::array) {
+      throw InputError(fmt::format("{}: {} = {}: must be a list of tables, [[{}]]", node->place, section.path,
+                                   node->shown, section.path));
+    }
+    for (std::size_t i = 0; node != nullptr && i < node->items.size(); ++i) {
+      const std::string name = fmt::format("{}.{}", section.path, i);
+      if (node->items[i].kind != Kind::table) {
+        throw InputError(fmt::format("{}: {} = {}: must be a table, [[{}]]", node->items[i].place, name,
+                                     node->items[i].shown, section.path));
+      }
+      made.emplace_back(section_of_entry(section.path, name, node->items[i]), name, &node->items[i], file);
+    }
+  }
+}
+
+} // namespace boba

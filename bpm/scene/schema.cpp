@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/scene/schema.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <numeric>
+
+namespace boba {
+
+namespace {
+
+std::string range_text(const SceneKey& key) {
+  const auto shown = [&key](double bound) {
+    return key.type == SceneKey::Type::integer ? fmt::format("{:.0f}", bound) : fmt::format("{:g}", bound);
+  };
+  std::string text;
+  if (std::isfinite(key.lowest)) {
+    text = fmt::format(" {} {}", key.above_lowest ? "above" : "from", shown(key.lowest));
+  }
+  if (std::isfinite(key.highest)) {
+    text += fmt::format(" {} {}", key.above_lowest ? "and at most" : "to", shown(key.highest));
+  }
+  return text + (key.unit.empty() ? "" : " (" + key.unit + ")");
+}
+
+SceneKey make_key(SceneKey::Type type, std::string name, std::string fallback, std::string doc) {
+  SceneKey key;
+  key.type = type;
+  key.name = std::move(name);
+  key.fallback = std::move(fallback);
+  key.doc = std::move(doc);
+  return key;
+}
+
+} // namespace
+
+std::string SceneKey::allowed() const {
+  switch (type) {
+  case Type::boolean:
+    return "true or false";
+  case Type::integer:
+    return "a whole number" + range_text(*this);
+  case Type::real:
+    return "a number" + range_text(*this);
+  case Type::text:
+    return "a text in quotes";
+  case Type::choice:
+    return fmt::format("one of \"{}\"", fmt::join(choices, "\", \""));
+  case Type::vector3:
+    return "three numbers in brackets, each" + range_text(*this);
+  }
+  return "";
+}
+
+SceneKey boolean_key(std::string name, std::string fallback, std::string doc) {
+  return make_key(SceneKey::Type::boolean, std::move(name), std::move(fallback), std::move(doc));
+}
+
+SceneKey integer_key(std::string name, double lowest, double highest, std::string fallback, std::string doc) {
+  SceneKey key = make_key(SceneKey::Type::integer, std::move(name), std::move(fallback), std::move(doc));
+  key.lowest = lowest;
+  key.highest = highest;
+  return key;
+}
+
+SceneKey real_key(std::string name, std::string unit, double lowest, double highest, std::string fallback,
+                  std::string doc) {
+  SceneKey key = make_key(SceneKey::Type::real, std::move(name), std::move(fallback), std::move(doc));
+  key.unit = std::move(unit);
+  key.lowest = lowest;
+  key.highest = highest;
+  return key;
+}
+
+SceneKey above_key(std::string name, std::string unit, double lowest, double highest, std::string fallback,
+                   std::string doc) {
+  SceneKey key = real_key(std::move(name), std::move(unit), lowest, highest, std::move(fallback), std::move(doc));
+  key.above_lowest = true;
+  return key;
+}
+
+SceneKey text_key(std::string name, std::string fallback, std::string doc) {
+  return make_key(SceneKey::Type::text, std::move(name), std::move(fallback), std::move(doc));
+}
+
+SceneKey choice_key(std::string name, std::vector<std::string> choices, std::string fallback, std::string doc) {
+  SceneKey key = make_key(SceneKey::Type::choice, std::move(name), std::move(fallback), std::move(doc));
+  key.choices = std::move(choices);
+  return key;
+}
+
+SceneKey vector_key(std::string name, std::string unit, double lowest, double highest, std::string fallback,
+                    std::string doc) {
+  SceneKey key = above_key(std::move(name), std::move(unit), lowest, highest, std::move(fallback), std::move(doc));
+  key.type = SceneKey::Type::vector3;
+  return key;
+}
+
+SceneKey required(SceneKey key) {
+  key.required = true;
+  return key;
+}
+
+const SceneKey* SceneSection::find(const std::string& name) const {
+  const auto at = std::find_if(keys.begin(), keys.end(), [&](const SceneKey& key) { return key.name == name; });
+  return at == keys.end() ? nullptr : &*at;
+}
+
+std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
+  // Levenshtein's distance, one row at a time.
+  const auto distance = [&word](const std::string& other) {
+    std::vector<std::size_t> row(other.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < word.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i + 1;
+      for (std::size_t j = 0; j < other.size(); ++j) {
+        const std::size_t substituted = diagonal + (word[i] == other[j] ? 0 : 1);
+        diagonal = row[j + 1];
+        row[j + 1] = std::min({substituted, row[j] + 1, row[j + 1] + 1});
+      }
+    }
+    return row.back();
+  };
+  constexpr std::size_t longest_word = 64; // an absurdly long key is near to nothing
+  std::string nearest;
+  std::size_t best = word.size() > longest_word ? 0 : std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& other : known) {
+    const bool beginning = word.size() >= 3 && word.size() <= longest_word && other.starts_with(word);
+    const std::size_t d = best == 0 ? 0 : (beginning ? 1 : distance(other));
+    if (best > 0 && d < best) {
+      best = d;
+      nearest = other;
+    }
+  }
+  return nearest;
+}
+
+namespace {
+
+/// A vertical bar would end the cell of a Markdown table.
+std::string cell(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    result += c == '|' ? std::string("\\|") : std::string(1, c);
+  }
+  return result;
+}
+
+} // namespace
+
+std::string scene_reference() {
+  std::string text =
+      "# The scene format\n\n"
+      "This page is written by `boba info --scene-reference`; do not edit it.\n\n"
+      "A scene is a [TOML](https://toml.io) file. Units: node diameter d, node mass m, bond stiffness k are 1; time\n"
+      "tau = sqrt(m/k), pressure k/d, alpha k d (docs/notation.md). A key or a table that is not listed here, a value "
+      "of\n"
+      "another type or outside its range stops the program with exit code 2 before anything is written.\n\n"
+      "`--set PLACE=VALUE` on the command line replaces a value or adds one: `--set run.dt=0.05`,\n"
+      "`--set stage.1.rate=1e-4` (entries of `[[stage]]`, `[[template]]` and `[[species]]` count from 0) or\n"
+      "`--set stage.shear.rate=1e-4` (the only stage of that type).\n\n"
+      "Paths of input files are relative to the scene's folder. Nothing is written outside the output folder.\n";
+  for (const SceneSection& section : scene_schema()) {
+    const std::string brackets =
+        section.repeated ? fmt::format("[[{}]]", section.path) : fmt::format("[{}]", section.path);
+    const std::string name = section.path.empty() ? "Top of the file" : "`" + brackets + "`";
+    text += fmt::format("\n## {}{}\n\n{}\n", name, section.kind.empty() ? "" : " `type = \"" + section.kind + "\"`",
+                        section.doc);
+    if (!section.keys.empty()) {
+      text += "\n| key | allowed | default | meaning |\n| --- | --- | --- | --- |\n";
+    }
+    for (const SceneKey& key : section.keys) {
+      const std::string fallback =
+          key.required ? "required" : (key.fallback.empty() ? "none" : "`" + key.fallback + "`");
+      text += fmt::format("| `{}` | {} | {} | {} |\n", key.name, key.allowed(), fallback, cell(key.doc));
+    }
+  }
+  return text;
+}
+
+} // namespace boba

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace boba {
+
+/// A checked value of a scene.
+using SceneValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
+
+/// What a key of a scene may hold.
+struct SceneKey {
+  enum class Type { boolean, integer, real, text, choice, vector3 };
+
+  std::string name;
+  Type type = Type::real;
+  std::string unit; ///< "" for a pure number
+  std::string doc;
+  bool required = false;
+  std::string fallback; ///< how the default reads in the documentation; "" when the key may be absent
+  double lowest = -std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
+  bool above_lowest = false; ///< the lowest value itself is not allowed
+  std::vector<std::string> choices;
+
+  /// "a number above 0 and at most 1 (tau)": the end of every message about this key.
+  std::string allowed() const;
+};
+
+/// Builders, so that a table of keys reads like a table.
+SceneKey boolean_key(std::string name, std::string fallback, std::string doc);
+SceneKey integer_key(std::string name, double lowest, double highest, std::string fallback, std::string doc);
+SceneKey real_key(std::string name, std::string unit, double lowest, double highest, std::string fallback,
+                  std::string doc);
+/// As real_key, but greater than `lowest`.
+SceneKey above_key(std::string name, std::string unit, double lowest, double highest, std::string fallback,
+                   std::string doc);
+SceneKey text_key(std::string name, std::string fallback, std::string doc);
+SceneKey choice_key(std::string name, std::vector<std::string> choices, std::string fallback, std::string doc);
+SceneKey vector_key(std::string name, std::string unit, double lowest, double highest, std::string fallback,
+                    std::string doc);
+SceneKey required(SceneKey key);
+
+/// The keys of one table of a scene.
+struct SceneSection {
+  std::string path;      ///< "run", "output.table", "stage"; "" for the top of the file
+  std::string kind;      ///< value of `type` that selects this one among the tables of the same path, or ""
+  bool repeated = false; ///< an array of tables: [[stage]]
+  std::string doc;
+  std::vector<SceneKey> keys;
+
+  const SceneKey* find(const std::string& name) const;
+};
+
+/// Every table a scene may have: the format's only definition. The reader and docs/scene.md come from it.
+const std::vector<SceneSection>& scene_schema();
+
+/// docs/scene.md.
+std::string scene_reference();
+
+/// The word of `known` that is nearest to `word` by edit distance, or "" when none is near.
+std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
+
+} // namespace boba
