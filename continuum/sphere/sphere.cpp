@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "continuum/sphere/sphere.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+#include <optional>
+#include <stdexcept>
+
+namespace boba::continuum {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A mesh serves contact radii within this factor: beyond it a second factorisation costs less than the elements.
+constexpr double widest_range = 2.5;
+
+struct Range {
+  double lowest, highest;
+  bool holds(double value) const { return value >= lowest && value <= highest; }
+};
+
+/// A body meshed for a range of contact radii.
+struct Stage {
+  Range edges;
+  std::shared_ptr<MeridianBody> body;
+  std::unique_ptr<PlatePress> press;
+};
+
+class Run {
+public:
+  explicit Run(const SphereProblem& problem) : problem_(problem) {}
+
+  std::vector<SphereLoad> loads() {
+    std::vector<SphereLoad> result;
+    for (std::size_t i = 0; i < problem_.approaches.size(); ++i) {
+      result.push_back(load(i));
+    }
+    return result;
+  }
+
+private:
+  /// Contact radius to expect: Hertz's, corrected by what the last load had.
+  double expected_edge(double approach) const {
+    const double radius = problem_.radius;
+    return std::min(ratio_ * hertz(radius, problem_.material, approach / 2).contact_radius, 0.85 * radius);
+  }
+
+  /// Contact radii of this load and of those after it that are near enough to share a mesh.
+  Range range_from(std::size_t first) const {
+    const double edge = expected_edge(problem_.approaches[first]);
+    Range range{edge, edge};
+    for (std::size_t i = first + 1; i < problem_.approaches.size(); ++i) {
+      const double next = expected_edge(problem_.approaches[i]);
+      const Range wider{std::min(range.lowest, next), std::max(range.highest, next)};
+      if (wider.highest > widest_range * wider.lowest) {
+        break;
+      }
+      range = wider;
+    }
+    return {0.93 * range.lowest, std::min(1.07 * range.highest, 0.9 * problem_.radius)};
+  }
+
+  void prepare(const Range& edges) {
+    SphereMeshSize size;
+    size.lowest_edge = edges.lowest;
+    size.highest_edge = edges.highest;
+    size.elements_across = problem_.elements_across;
+    size.elements_inside = std::max(8., problem_.elements_across / 3);
+    Stage stage;
+    stage.edges = edges;
+    stage.body = std::make_shared<MeridianBody>(sphere_mesh(problem_.radius, size), problem_.discretisation);
+    stage.press = std::make_unique<PlatePress>(*stage.body, problem_.material, plate_side,
+                                               std::min(1.3 * edges.highest, 0.97 * problem_.radius));
+    stage_ = std::move(stage);
+  }
+
+  SphereLoad load(std::size_t i) {
+    const auto start = Clock::now();
+    const double approach = problem_.approaches[i];
+    if (!stage_ || !stage_->edges.holds(expected_edge(approach))) {
+      prepare(range_from(i));
+    }
+    SphereLoad result = solved(approach);
+    // A surprise (auxetic or deep contact): mesh again around the edge that was found.
+    for (int repeat = 0; repeat < 4 && !stage_->edges.holds(result.contact_radius); ++repeat) {
+      remember(result);
+      prepare({0.93 * result.contact_radius, std::min(1.07 * result.contact_radius, 0.9 * problem_.radius)});
+      result = solved(approach);
+    }
+    remember(result);
+    result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    return result;
+  }
+
+  void remember(const SphereLoad& load) { ratio_ = load.contact_radius / load.hertz.contact_radius; }
+
+  SphereLoad solved(double approach) {
+    SphereLoad load;
+    const PressState state = stage_->press->press(problem_.radius - approach / 2, problem_.interface);
+    const ContactSurface& surface = stage_->press->surface();
+    load.approach = approach;
+    load.hertz = hertz(problem_.radius, problem_.material, approach / 2);
+    load.force = state.force;
+    load.contact_radius = contact_edge(surface.r(), state, problem_.interface);
+    load.central_pressure = central_pressure(surface.r(), state, load.contact_radius);
+    load.peak_pressure = std::max(load.central_pressure, off_axis_peak(surface.r(), state, load.contact_radius));
+    load.active_set_iterations = state.active_set_iterations;
+    load.newton_iterations = state.newton_iterations;
+    load.n_unknowns = stage_->body->n_unknowns();
+    load.n_contact_unknowns = int(state.pressure.size());
+    load.r = surface.r();
+    load.pressure = state.pressure;
+    load.overlap = state.overlap;
+    load.body = stage_->body;
+    load.displacement = state.displacement;
+    load.profile = stage_->body->boundary_points(plate_side, state.displacement);
+    load.equatorial_bulge = load.profile.front().u_r;
+    return load;
+  }
+
+  /// Largest nodal pressure away from the axis, where the smoothed central value does not speak.
+  static double off_axis_peak(const Eigen::VectorXd& r, const PressState& state, double edge) {
+    double peak = 0;
+    for (Eigen::Index i = 0; i < r.size(); ++i) {
+      if (r[i] > 0.4 * edge) {
+        peak = std::max(peak, state.pressure[i]);
+      }
+    }
+    return peak;
+  }
+
+  const SphereProblem& problem_;
+  double ratio_ = 1;
+  std::optional<Stage> stage_;
+};
+
+} // namespace
+
+void check(const SphereProblem& problem) {
+  check_positive("radius", problem.radius);
+  check(problem.material);
+  check(problem.interface);
+  if (problem.approaches.empty()) {
+    throw std::invalid_argument("approach = (none) is not allowed: give at least one in (0, 2 radius)");
+  }
+  for (const double approach : problem.approaches) {
+    if (!(approach > 0 && approach < 2 * problem.radius)) {
+      throw std::invalid_argument(fmt::format(
+          "approach = {} is not allowed: it must lie in (0, {}), or the plates cross", approach, 2 * problem.radius));
+    }
+  }
+  if (!(problem.elements_across >= 8) || problem.elements_across > 4096) {
+    throw std::invalid_argument(
+        fmt::format("elements-across = {} is not allowed: it must lie in [8, 4096] elements across the contact radius",
+                    problem.elements_across));
+  }
+}
+
+std::vector<SphereLoad> solve(const SphereProblem& problem) {
+  check(problem);
+  return Run(problem).loads();
+}
+
+} // namespace boba::continuum
