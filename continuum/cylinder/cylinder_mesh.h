@@ -8,7 +8,7 @@ namespace boba::continuum {
 /// How finely the quarter meridian of a cylinder is cut.
 struct CylinderMeshSize {
   /// Element size at the corner where the held end meets the free side, in units of min(R, h/2).
-  double corner = 1e-4;
+  double corner = 1e-3;
   /// Growth of the element size with the distance from that corner.
   double growth = 0.35;
   /// Largest element, in units of min(R, h/2), within that distance of end and side.

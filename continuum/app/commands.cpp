@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "continuum/app/commands.h"
+
+#include "continuum/app/report.h"
+#include "continuum/app/summary.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <fmt/format.h>
+#include <iostream>
+
+namespace boba::continuum {
+namespace {
+
+using nlohmann::json;
+
+/// Linear kinematics are doubtful beyond this a/R, and beyond this nominal strain of a cylinder.
+constexpr double largest_linear_contact = 0.3;
+constexpr double largest_linear_strain = 0.1;
+
+struct Options {
+  double radius = 1, height = 2, young = 1, poisson = 0.25, slab = 0;
+  double c1 = 0, c3 = 0;
+  double elements_across = 48, corner = CylinderMeshSize{}.corner;
+  unsigned degree = 2;
+  std::vector<double> approaches, strains;
+  std::string ends = "bonded", against = "plates", interface = "rigid", formulation = "automatic", output;
+  bool force = false, no_fields = false;
+};
+
+class CommandsImpl : public Commands {
+public:
+  explicit CommandsImpl(CLI::App& app) {
+    sphere_ = app.add_subcommand("sphere", "a sphere between two rigid frictionless plates");
+    common(*sphere_);
+    sphere_->add_option("--approach", options_.approaches, "approaches of the two plates (total), comma separated")
+        ->delimiter(',')
+        ->required();
+    sphere_->add_option("--against", options_.against, "plates, or sphere: two equal spheres, approach of the centres")
+        ->check(CLI::IsMember({"plates", "sphere"}));
+    sphere_->add_option("--elements-across", options_.elements_across, "elements across the contact radius, >= 8");
+    cylinder_ = app.add_subcommand("cylinder", "a cylinder between two plates, held or sliding");
+    common(*cylinder_);
+    cylinder_->add_option("--height", options_.height, "height between the held ends")->required();
+    cylinder_->add_option("--slab", options_.slab, "thickness of the rigid end slabs beyond the height");
+    cylinder_->add_option("--ends", options_.ends, "bonded or sliding")->check(CLI::IsMember({"bonded", "sliding"}));
+    cylinder_->add_option("--strain", options_.strains, "nominal compressive strains, comma separated")
+        ->delimiter(',')
+        ->required();
+    cylinder_->add_option("--corner", options_.corner, "element size at the held corner, in units of min(R, h/2)");
+  }
+
+  int run(std::ostream& warnings) override {
+    return sphere_->parsed() ? run_sphere(warnings) : run_cylinder(warnings);
+  }
+
+private:
+  void common(CLI::App& app) {
+    app.add_option("--radius", options_.radius, "radius")->required();
+    app.add_option("--young", options_.young, "Young's modulus")->required();
+    app.add_option("--poisson", options_.poisson, "Poisson's ratio, in (-1, 0.5)")->required();
+    app.add_option("--output", options_.output, "folder for the results")->required();
+    app.add_flag("--force", options_.force, "write over earlier results");
+    app.add_flag("--no-fields", options_.no_fields, "leave out the .vtu files");
+    app.add_option("--interface", options_.interface, "rigid or compliant")
+        ->check(CLI::IsMember({"rigid", "compliant"}));
+    app.add_option("--c1", options_.c1, "compliant: p = c1 g + c3 g^3, stress per length");
+    app.add_option("--c3", options_.c3, "compliant: stress per length^3");
+    app.add_option("--degree", options_.degree, "degree of the displacement, 1 to 4");
+    app.add_option("--formulation", options_.formulation, "automatic, displacement or projected")
+        ->check(CLI::IsMember({"automatic", "displacement", "projected"}));
+  }
+
+  InterfaceLaw interface() const {
+    return options_.interface == "rigid" ? InterfaceLaw{} : InterfaceLaw{options_.c1, options_.c3};
+  }
+
+  Discretisation discretisation() const {
+    const Formulation formulation = options_.formulation == "automatic"      ? Formulation::automatic
+                                    : options_.formulation == "displacement" ? Formulation::displacement
+                                                                             : Formulation::projected;
+    return {options_.degree, formulation};
+  }
+
+  json parameters() const {
+    json result = {{"radius", options_.radius},       {"young", options_.young},   {"poisson", options_.poisson},
+                   {"interface", options_.interface}, {"kinematics", "linear"},    {"degree", options_.degree},
+                   {"dimension", 2},                  {"formulation", options_.formulation}};
+    if (options_.interface == "compliant") {
+      result["c1"] = options_.c1;
+      result["c3"] = options_.c3;
+    }
+    return result;
+  }
+
+  int run_sphere(std::ostream& warnings) {
+    SphereProblem problem;
+    problem.radius = options_.radius;
+    problem.material = {options_.young, options_.poisson};
+    problem.approaches = options_.approaches;
+    problem.interface = interface();
+    problem.discretisation = discretisation();
+    problem.elements_across = options_.elements_across;
+    check(problem);
+    prepare_folder(options_.output, options_.force);
+    const auto loads = solve(problem);
+    for (const auto& load : loads) {
+      if (load.contact_radius > largest_linear_contact * problem.radius) {
+        warnings << fmt::format("boba-continuum: warning: at approach {} the contact radius is {:.3g} R, beyond what "
+                                "small strain can mean (about {} R); use --kinematics finite\n",
+                                load.approach, load.contact_radius / problem.radius, largest_linear_contact);
+        break;
+      }
+    }
+    json chosen = parameters();
+    chosen["against"] = options_.against;
+    chosen["elements_across"] = options_.elements_across;
+    write_summary(options_.output, report(loads, problem, chosen));
+    if (!options_.no_fields) {
+      write_fields(options_.output, loads, problem);
+    }
+    for (const auto& load : loads) {
+      fmt::print("approach {:<12g} force {:<14.8g} F/F_Hertz {:<10.6f} a/R {:<10.6f} peak pressure {:<12.7g}\n",
+                 load.approach, load.force, load.force / load.hertz.force, load.contact_radius / problem.radius,
+                 load.peak_pressure);
+    }
+    return 0;
+  }
+
+  int run_cylinder(std::ostream& warnings) {
+    CylinderProblem problem;
+    problem.radius = options_.radius;
+    problem.height = options_.height;
+    problem.material = {options_.young, options_.poisson};
+    problem.ends = options_.ends == "bonded" ? Ends::bonded : Ends::sliding;
+    problem.strains = options_.strains;
+    problem.interface = interface();
+    problem.discretisation = discretisation();
+    problem.mesh.corner = options_.corner;
+    check(problem);
+    if (!(options_.slab >= 0)) {
+      throw std::invalid_argument(fmt::format("slab = {} is not allowed: it must be >= 0", options_.slab));
+    }
+    if (!(options_.corner > 0 && options_.corner <= 1)) {
+      throw std::invalid_argument(fmt::format("corner = {} is not allowed: it must lie in (0, 1]", options_.corner));
+    }
+    prepare_folder(options_.output, options_.force);
+    const auto result = solve(problem);
+    for (const double strain : problem.strains) {
+      if (std::abs(strain) > largest_linear_strain) {
+        warnings << fmt::format("boba-continuum: warning: strain {} is beyond what small strain can mean (about {}); "
+                                "use --kinematics finite\n",
+                                strain, largest_linear_strain);
+        break;
+      }
+    }
+    json chosen = parameters();
+    chosen["height"] = options_.height;
+    chosen["slab"] = options_.slab;
+    chosen["ends"] = options_.ends;
+    write_summary(options_.output, report(result, problem, chosen));
+    if (!options_.no_fields) {
+      write_fields(options_.output, result, problem);
+    }
+    for (const auto& load : result.loads) {
+      fmt::print("strain {:<10g} force {:<14.8g} apparent modulus {:<12.8g} mid-height Poisson ratio {:<10.6f}\n",
+                 load.strain, load.force, load.apparent_modulus, load.midheight_poisson);
+    }
+    return 0;
+  }
+
+  Options options_;
+  CLI::App* sphere_ = nullptr;
+  CLI::App* cylinder_ = nullptr;
+};
+
+} // namespace
+
+std::unique_ptr<Commands> add_commands(CLI::App& app) { return std::make_unique<CommandsImpl>(app); }
+
+} // namespace boba::continuum
