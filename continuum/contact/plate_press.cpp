@@ -66,16 +66,23 @@ double contact_edge(const Eigen::VectorXd& r, const PressState& state, const Int
   // The vertex next to the edge carries the error of the broken element and is left out.
   std::vector<double> squares, pressures;
   for (Eigen::Index i = 0; i + 1 < last; ++i) {
-    if (r[i] > 0.67 * r[last]) {
+    if (r[i] > 0.6 * r[last]) {
       squares.push_back(r[i] * r[i]);
       pressures.push_back(state.pressure[i] * state.pressure[i]);
     }
   }
-  if (squares.size() < 3) {
+  if (squares.size() < 5) {
     return r[last];
   }
-  const Eigen::VectorXd line = polynomial_fit(squares, pressures, 1);
-  return std::sqrt(std::max(0., -line[0] / line[1]));
+  const Eigen::VectorXd fit = polynomial_fit(squares, pressures, 2);
+  double square = r[last] * r[last];
+  for (int step = 0; step < 20; ++step) {
+    square -= (fit[0] + square * (fit[1] + square * fit[2])) / (fit[1] + 2 * square * fit[2]);
+  }
+  // The edge lies beside the last pressed vertex; a fit that says otherwise is not one.
+  const double edge = std::sqrt(std::max(0., square));
+  const double spacing = r[last] - r[last - 1];
+  return std::abs(edge - r[last]) < 3 * spacing ? edge : r[last];
 }
 
 double central_pressure(const Eigen::VectorXd& r, const PressState& state, double edge) {

@@ -39,7 +39,7 @@ private:
 };
 
 /// Radius at which the contact ends. Rigid interface: the square of the pressure, which goes to zero linearly, is
-/// extrapolated from the outer third of the pressed vertices; compliant: where the overlap changes sign.
+/// extrapolated by a parabola from the outer part of the pressed vertices; compliant: where the overlap changes sign.
 /// Returns 0 without contact.
 double contact_edge(const Eigen::VectorXd& r, const PressState& state, const InterfaceLaw& interface);
 
