@@ -94,16 +94,26 @@ void Stepper::sum_up() {
   kinetic_energy_ = 0.5 * kinetic;
 }
 
+namespace {
+
+Matrix3 simple_shear(double rate) {
+  Matrix3 gradient = Matrix3::Zero();
+  gradient(0, 1) = rate;
+  return gradient;
+}
+
+} // namespace
+
 void Stepper::move_cell(const CellRates& rates) {
-  Matrix3 velocity_gradient = rates.dilation * Matrix3::Identity();
-  Matrix3 of_positions = velocity_gradient;
-  velocity_gradient(0, 1) = rates.shear;
-  if (rates.remap == Remap::positions) {
-    of_positions(0, 1) = rates.shear;
-  }
+  const Matrix3 dilation = rates.dilation * Matrix3::Identity();
+  const Matrix3 gradient = dilation + simple_shear(rates.shear);
   strain_ += rates.shear * options_.dt;
-  if (velocity_gradient != Matrix3::Zero()) {
-    cell_map_ = Matrix3::Identity() + options_.dt * velocity_gradient;
+  deform_cell(gradient, rates.remap == Remap::positions ? gradient : dilation);
+}
+
+void Stepper::deform_cell(const Matrix3& gradient, const Matrix3& of_positions) {
+  if (gradient != Matrix3::Zero()) {
+    cell_map_ = Matrix3::Identity() + options_.dt * gradient;
     position_map_ = Matrix3::Identity() + options_.dt * of_positions;
     box_.set_h(cell_map_ * box_.h());
     // A periodic template's bonds name their images by the cell vectors it was made with: its cell is never flipped.
@@ -111,10 +121,7 @@ void Stepper::move_cell(const CellRates& rates) {
       forces_.contact_list().invalidate();
     }
   }
-  residual_rate_.setZero();
-  if (rates.remap == Remap::velocities) {
-    residual_rate_.row(0) = rates.shear * box_.h().row(1);
-  }
+  set_residual_gradient(gradient - of_positions);
 }
 
 void Stepper::add_streaming(double rate, double sign) {
@@ -124,10 +131,7 @@ void Stepper::add_streaming(double rate, double sign) {
       state_.v[layout_.index(g, node, 0)] += sign * rate * y;
     }
   }
-  residual_rate_.setZero();
-  if (sign > 0.0) {
-    residual_rate_.row(0) = rate * box_.h().row(1);
-  }
+  set_residual_gradient(simple_shear(sign > 0.0 ? rate : 0.0));
 }
 
 double Stepper::pressure_when_scaled(double factor) {

@@ -39,6 +39,10 @@ public:
   void advance(Virial virial);
   /// Moves the cell at the end of a step, flips it when it leans too far, and advances time and strain.
   void move_cell(const CellRates& rates);
+  /// The same for any velocity gradient of the cell (upper triangular), of which `of_positions` acts on the nodes.
+  void deform_cell(const Matrix3& gradient, const Matrix3& of_positions);
+  /// The part of the cell's velocity gradient that does not act on positions: images move with it.
+  void set_residual_gradient(const Matrix3& gradient) { residual_rate_ = gradient * box_.h(); }
   /// Adds (sign = 1) or removes (-1) the linear velocity profile of a shear that does not act on positions.
   void add_streaming(double rate, double sign);
 
