@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/measure/contact_network.h"
+
+#include "bpm/forces/contact_search.h"
+#include "bpm/laws/contact.h"
+#include "bpm/measure/footprint.h"
+#include "bpm/measure/parallel_loop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <stdexcept>
+
+namespace boba::measure {
+
+namespace {
+
+std::vector<Bounds> bounds_of(const GrainNodes& grains) {
+  std::vector<Bounds> bounds(grains.n_grains());
+  for (int grain = 0; grain < grains.n_grains(); ++grain) {
+    for (const Vector3& x : grains.nodes_of(grain)) {
+      bounds[grain].low = bounds[grain].low.cwiseMin(x);
+      bounds[grain].high = bounds[grain].high.cwiseMax(x);
+    }
+  }
+  return bounds;
+}
+
+/// Every pair of grains is looked at from the side of the lower number; a grain's own images from the positive side.
+bool is_first_side(int grain, const NeighbourGrain& neighbour) {
+  return neighbour.other > grain || (neighbour.other == grain && neighbour.image > ImageVector{});
+}
+
+class NetworkBuilder {
+public:
+  NetworkBuilder(const Box& box, const GrainNodes& grains, const Material& material)
+      : box_(box), grains_(grains), material_(material), bounds_(bounds_of(grains)), centres_(grain_centres(grains)) {}
+
+  std::vector<GrainContact> contacts_of(int grain) const {
+    std::vector<GrainContact> contacts;
+    const auto neighbours = neighbour_grains(grain, bounds_, box_, material_.diameter);
+    const ContactSearch search(grains_.nodes_of(grain), bounds_[grain], material_.diameter);
+    std::vector<CandidatePair> pairs;
+    for (const NeighbourGrain& neighbour : neighbours) {
+      if (!is_first_side(grain, neighbour)) {
+        continue;
+      }
+      const Vector3 shift = box_.h() * Vector3(neighbour.image.a, neighbour.image.b, neighbour.image.c);
+      pairs.clear();
+      search.add_neighbour(0, grains_.nodes_of(neighbour.other), shift, pairs);
+      GrainContact contact = contact_from(grain, neighbour.other, shift, pairs);
+      if (contact.n_pairs > 0) {
+        contact.image = {neighbour.image.a, neighbour.image.b, neighbour.image.c};
+        contacts.push_back(contact);
+      }
+    }
+    return contacts;
+  }
+
+private:
+  GrainContact contact_from(int grain, int other, const Vector3& shift, const std::vector<CandidatePair>& pairs) const {
+    GrainContact contact{.grain = grain, .other = other};
+    contact.branch = centres_[other] + shift - centres_[grain];
+    const auto own = grains_.nodes_of(grain), others = grains_.nodes_of(other);
+    std::vector<Vector3> midpoints;
+    for (const CandidatePair& pair : pairs) {
+      const Vector3 from_other = own[pair.own] - (others[pair.node] + shift);
+      const double r = from_other.norm();
+      if (!(r < material_.diameter)) {
+        continue;
+      }
+      const double force = contact_force(material_.k, material_.k3, 0.0, material_.diameter, r, 0.0);
+      contact.force += force * (r > 0.0 ? Vector3(from_other / r) : Vector3(Vector3::Zero()));
+      contact.largest_overlap = std::max(contact.largest_overlap, material_.diameter - r);
+      midpoints.push_back(own[pair.own] - 0.5 * from_other);
+    }
+    if (midpoints.empty()) {
+      return contact;
+    }
+    contact.n_pairs = static_cast<int>(midpoints.size());
+    contact.point = mean_position(midpoints);
+    // Forces that cancel leave no direction of their own; the centres' line is then the best there is.
+    contact.normal = contact.force.norm() > 0.0 ? Vector3(-contact.force.normalized()) : contact.branch.normalized();
+    contact.area = footprint_area(midpoints, contact.normal, 0.5 * material_.diameter);
+    return contact;
+  }
+
+  const Box& box_;
+  const GrainNodes& grains_;
+  const Material& material_;
+  std::vector<Bounds> bounds_;
+  std::vector<Vector3> centres_;
+};
+
+} // namespace
+
+std::vector<GrainContact> contact_network(const Box& box, const GrainNodes& grains, const Material& material) {
+  if (!(material.diameter > 0.0) || !std::isfinite(material.diameter)) {
+    throw std::invalid_argument(
+        fmt::format("contact network: the contact distance is {}; it must be positive", material.diameter));
+  }
+  const NetworkBuilder builder(box, grains, material);
+  std::vector<std::vector<GrainContact>> of_grain(grains.n_grains());
+  parallel_loop(grains.n_grains(), [&](std::int64_t g) { of_grain[g] = builder.contacts_of(static_cast<int>(g)); });
+  std::vector<GrainContact> contacts;
+  for (const auto& list : of_grain) {
+    contacts.insert(contacts.end(), list.begin(), list.end());
+  }
+  return contacts;
+}
+
+Coordination coordination(int n_grains, const std::vector<GrainContact>& contacts, int min_contacts) {
+  Coordination result;
+  result.n_contacts.assign(n_grains, 0);
+  result.is_rattler.assign(n_grains, 0);
+  const auto count = [&](std::vector<int>& n) {
+    for (const GrainContact& contact : contacts) {
+      if (!result.is_rattler[contact.grain] && !result.is_rattler[contact.other]) {
+        ++n[contact.grain];
+        ++n[contact.other];
+      }
+    }
+  };
+  count(result.n_contacts);
+  std::vector<int> carrying = result.n_contacts;
+  for (bool found = true; found;) {
+    found = false;
+    for (int grain = 0; grain < n_grains; ++grain) {
+      if (!result.is_rattler[grain] && carrying[grain] < min_contacts) {
+        result.is_rattler[grain] = 1;
+        ++result.n_rattlers;
+        found = true;
+      }
+    }
+    carrying.assign(n_grains, 0);
+    count(carrying);
+  }
+  double all = 0.0, held = 0.0;
+  for (int grain = 0; grain < n_grains; ++grain) {
+    all += result.n_contacts[grain];
+    held += carrying[grain];
+  }
+  result.mean = n_grains > 0 ? all / n_grains : 0.0;
+  const int n_held = n_grains - result.n_rattlers;
+  result.mean_without_rattlers = n_held > 0 ? held / n_held : 0.0;
+  return result;
+}
+
+Matrix3 fabric_tensor(const std::vector<GrainContact>& contacts) {
+  Matrix3 sum = Matrix3::Zero();
+  for (const GrainContact& contact : contacts) {
+    sum += contact.normal * contact.normal.transpose();
+  }
+  return contacts.empty() ? sum : Matrix3(sum / static_cast<double>(contacts.size()));
+}
+
+double fabric_anisotropy(const Matrix3& fabric) {
+  const Matrix3 deviator = fabric - fabric.trace() / 3.0 * Matrix3::Identity();
+  return std::sqrt(1.5 * deviator.cwiseProduct(deviator).sum());
+}
+
+} // namespace boba::measure

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/measure/stress.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <stdexcept>
+
+namespace boba::measure {
+
+StressSummary summarise_stress(const Tensor6& s) {
+  StressSummary summary;
+  summary.pressure = -(s[0] + s[1] + s[2]) / 3.0;
+  summary.mu = summary.pressure != 0.0 ? s[3] / summary.pressure : 0.0;
+  summary.normal_difference_1 = s[0] - s[1];
+  summary.normal_difference_2 = s[1] - s[2];
+  return summary;
+}
+
+Tensor6 kinetic_stress(const Box& box, std::span<const Vector3> positions, std::span<const Vector3> velocities,
+                       double node_mass, const Matrix3& gradient) {
+  if (positions.size() != velocities.size()) {
+    throw std::invalid_argument(
+        fmt::format("kinetic stress: {} positions but {} velocities", positions.size(), velocities.size()));
+  }
+  Matrix3 sum = Matrix3::Zero();
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vector3 v = velocities[i] - gradient * (positions[i] - box.origin());
+    sum += v * v.transpose();
+  }
+  sum *= -node_mass / box.volume();
+  return {sum(0, 0), sum(1, 1), sum(2, 2), sum(0, 1), sum(0, 2), sum(1, 2)};
+}
+
+double inertial_number(double rate, double diameter, double density, double pressure) {
+  if (!(diameter > 0.0 && density > 0.0 && pressure > 0.0)) {
+    throw std::invalid_argument(fmt::format("inertial number: diameter {}, density {} and pressure {} must be positive",
+                                            diameter, density, pressure));
+  }
+  return rate * diameter * std::sqrt(density / pressure);
+}
+
+double normalised_pressure(double pressure, double young_modulus, double poisson_ratio) {
+  if (!(young_modulus > 0.0) || !(poisson_ratio >= -1.0 && poisson_ratio <= 0.5)) {
+    throw std::invalid_argument(fmt::format(
+        "normalised pressure: E = {} must be positive and nu = {} between -1 and 0.5", young_modulus, poisson_ratio));
+  }
+  return pressure * (2.0 - 2.0 * poisson_ratio * poisson_ratio) / young_modulus;
+}
+
+} // namespace boba::measure
