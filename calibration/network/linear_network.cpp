@@ -70,8 +70,30 @@ void LinearNetwork::add_nodal(const std::vector<double>& t, double* f) const {
 }
 
 void LinearNetwork::multiply(const double* u, double alpha, double* f) const {
+  // Two passes over the bonds: stretches and their nodal sums, then tensions and forces. The scratch arrays are kept
+  // because the operator is applied hundreds of times.
+  scratch_stretch_.resize(bonds_.size());
+  scratch_sum_.assign(position_.size(), 0.0);
+  for (std::size_t b = 0; b < bonds_.size(); ++b) {
+    const LinearBond& bond = bonds_[b];
+    const double *ui = u + 3 * bond.i, *uj = u + 3 * bond.j;
+    const double s = bond.e.x() * (ui[0] - uj[0]) + bond.e.y() * (ui[1] - uj[1]) + bond.e.z() * (ui[2] - uj[2]);
+    scratch_stretch_[b] = s;
+    scratch_sum_[bond.i] += bond.r0 * bond.r0 * s;
+    scratch_sum_[bond.j] += bond.r0 * bond.r0 * s;
+  }
   std::fill(f, f + 3 * position_.size(), 0.0);
-  add_nodal(tension(stretch(u), alpha), f);
+  for (std::size_t b = 0; b < bonds_.size(); ++b) {
+    const LinearBond& bond = bonds_[b];
+    const double s = scratch_stretch_[b];
+    const double many_body = (scratch_sum_[bond.i] + scratch_sum_[bond.j]) * bond.inverse_volume;
+    const double t = s + alpha * (s / bond.r0 - many_body);
+    double *fi = f + 3 * bond.i, *fj = f + 3 * bond.j;
+    for (int c = 0; c < 3; ++c) {
+      fi[c] += t * bond.e[c];
+      fj[c] -= t * bond.e[c];
+    }
+  }
 }
 
 Matrix3 LinearNetwork::stress(const std::vector<double>& t) const {

@@ -50,7 +50,7 @@ public:
   std::vector<double> tension(const std::vector<double>& s, double alpha) const;
   /// f += B^T t with f of 3 n entries: the nodal forces that resist, minus the forces of the law.
   void add_nodal(const std::vector<double>& t, double* f) const;
-  /// f = B^T (T0 + alpha T1) B u in one go, without temporary bond arrays.
+  /// f = B^T (T0 + alpha T1) B u in one go; not for two threads at once.
   void multiply(const double* u, double alpha, double* f) const;
   /// Stress sum_b t_b r0_b e e^T / volume, tension positive (k/d).
   Matrix3 stress(const std::vector<double>& t) const;
@@ -60,6 +60,7 @@ private:
   std::optional<Vector3> period_;
   std::vector<LinearBond> bonds_;
   double volume_ = 0.0;
+  mutable std::vector<double> scratch_stretch_, scratch_sum_;
 };
 
 } // namespace boba::calibration

@@ -2,6 +2,7 @@
 #include "calibration/network/network_operator.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 namespace boba::calibration {
@@ -142,13 +143,23 @@ void NetworkOperator::set_alpha(double alpha) {
   check(MatAXPY(pair_, std::max(alpha, lowest_pair_alpha), pair1_, SAME_NONZERO_PATTERN), "MatAXPY");
 }
 
-Matrix NetworkOperator::assembled(bool many_body) const {
-  if (!many_body) {
-    return to_petsc(pair_rows(network_, [](const LinearBond&) { return 1.0; }));
-  }
+Matrix NetworkOperator::assembled_a0() const {
+  return to_petsc(pair_rows(network_, [](const LinearBond&) { return 1.0; }));
+}
+
+Matrix NetworkOperator::assembled_a1() const {
   BlockRows rows = pair_rows(network_, [](const LinearBond& bond) { return 1.0 / bond.r0; });
   subtract_many_body(rows, network_);
   return to_petsc(rows);
+}
+
+Matrix NetworkOperator::assembled(double alpha) const {
+  Matrix matrix = assembled_a1();
+  check(MatScale(matrix, alpha), "MatScale");
+  check(MatAXPY(matrix, 1.0, pair0_, SUBSET_NONZERO_PATTERN), "MatAXPY");
+  check(MatSetNullSpace(matrix, null_space_), "MatSetNullSpace");
+  check(MatSetTransposeNullSpace(matrix, null_space_), "MatSetTransposeNullSpace");
+  return matrix;
 }
 
 } // namespace boba::calibration

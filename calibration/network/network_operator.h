@@ -27,8 +27,11 @@ public:
   Mat pair_matrix() const { return pair_; }
   MatNullSpace null_space() const { return null_space_; }
 
-  /// A0 (many_body = false) or A1 (true) in 3x3 blocks, the many-body term reaching second neighbours.
-  Matrix assembled(bool many_body) const;
+  /// A0 and A1 in 3x3 blocks; the many-body part of A1 reaches second neighbours.
+  Matrix assembled_a0() const;
+  Matrix assembled_a1() const;
+  /// A0 + alpha A1, with the null space.
+  Matrix assembled(double alpha) const;
 
 private:
   const LinearNetwork& network_;

@@ -30,10 +30,13 @@ Vector new_vector(int n) {
   return v;
 }
 
+/// GMRES with the incomplete factors of the pair matrix, by measurement (bench/calibration): for 20000 nodes it needs 25 to
+/// 40 iterations a solve; BiCGStab takes 1.3 times and point-block Jacobi 1.4 times as long, and conjugate gradients, 1.15 times
+/// faster, have no right to converge on an operator that is not symmetric.
 Solver new_solver(const SolveSettings& settings) {
   Solver solver;
   check(KSPCreate(PETSC_COMM_SELF, solver.address()), "KSPCreate");
-  check(KSPSetType(solver, KSPBCGS), "KSPSetType");
+  check(KSPSetType(solver, KSPGMRES), "KSPSetType");
   PC preconditioner = nullptr;
   check(KSPGetPC(solver, &preconditioner), "KSPGetPC");
   check(PCSetType(preconditioner, PCILU), "PCSetType");
@@ -102,8 +105,11 @@ std::vector<StiffnessSolution> relaxed_stiffness(const LinearNetwork& network, c
   std::vector<StiffnessSolution> solutions;
   for (const double alpha : alphas) {
     op.set_alpha(alpha);
-    check(KSPSetOperators(solver, op.matrix(), op.pair_matrix()), "KSPSetOperators");
-    StiffnessSolution solution{.alpha = alpha};
+    const Matrix assembled = settings.assembled ? op.assembled(alpha) : Matrix();
+    check(KSPSetOperators(solver, settings.assembled ? static_cast<Mat>(assembled) : op.matrix(), op.pair_matrix()),
+          "KSPSetOperators");
+    StiffnessSolution solution;
+    solution.alpha = alpha;
     for (int q = 0; q < 6; ++q) {
       const std::vector<double> affine = network.affine_stretch(unit_strain(q));
       set_right_hand_side(network, network.tension(affine, alpha), b);
