@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// Thin handles around the HDF5 C API; included by the sources of this folder only, so that no other file needs
+// <hdf5.h>.
+
+#include <cstdint>
+#include <filesystem>
+#include <hdf5.h>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace boba::hdf5 {
+
+/// Owns an HDF5 identifier of any kind.
+class Handle {
+public:
+  Handle() = default;
+  explicit Handle(hid_t id) : id_(id) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+  ~Handle() {
+    if (id_ >= 0) {
+      H5Idec_ref(id_);
+    }
+  }
+  operator hid_t() const { return id_; }
+
+private:
+  hid_t id_ = H5I_INVALID_HID;
+};
+
+template <typename T> hid_t type_of();
+template <> inline hid_t type_of<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+template <> inline hid_t type_of<std::int64_t>() {
+  return H5T_NATIVE_INT64;
+}
+template <> inline hid_t type_of<std::int32_t>() {
+  return H5T_NATIVE_INT32;
+}
+
+/// An open file and the few operations that the trajectory needs. Every failure is a std::runtime_error with the file's
+/// name, what was being done, and HDF5's own reason.
+class File {
+public:
+  File() = default;
+  /// Replaces what is there.
+  static File create(const std::filesystem::path& path);
+  static File open(const std::filesystem::path& path, bool writable);
+
+  void make_group(const std::string& name) const;
+  bool has(const std::string& name) const;
+  std::vector<hsize_t> shape(const std::string& dataset) const;
+
+  void set_attribute(const std::string& object, const std::string& name, const std::string& text) const;
+  void set_attribute(const std::string& object, const std::string& name, std::span<const std::int32_t> values) const;
+  /// Fixed-length strings, as H5MD wants the boundary of a box.
+  void set_attribute(const std::string& object, const std::string& name, const std::vector<std::string>& texts) const;
+  bool has_attribute(const std::string& object, const std::string& name) const;
+  std::string text_attribute(const std::string& object, const std::string& name) const;
+  std::vector<std::string> texts_attribute(const std::string& object, const std::string& name) const;
+
+  void write_text(const std::string& name, const std::string& text) const;
+  std::string read_text(const std::string& name) const;
+
+  /// A dataset that never changes; `width` > 1 makes it a table of rows of that many numbers.
+  template <typename T> void write(const std::string& name, std::span<const T> values, hsize_t width = 1) const {
+    write_raw(name, values.data(), type_of<T>(), values.size(), width);
+  }
+  /// New values for such a dataset, as many as before.
+  template <typename T> void rewrite(const std::string& name, std::span<const T> values) const {
+    rewrite_raw(name, values.data(), type_of<T>());
+  }
+  template <typename T> std::vector<T> read(const std::string& name) const {
+    std::vector<T> values(n_values(name));
+    read_raw(name, values.data(), type_of<T>());
+    return values;
+  }
+  /// One frame of a growing dataset.
+  template <typename T> std::vector<T> read_frame(const std::string& name, hsize_t frame) const {
+    std::vector<T> values(frame_size(name));
+    read_frame_raw(name, frame, values.data(), type_of<T>());
+    return values;
+  }
+
+  /// A dataset [frames][shape ...] with no frame yet. `frames_per_chunk` frames are stored together.
+  struct Growing {
+    std::vector<hsize_t> frame_shape;
+    hsize_t frames_per_chunk = 1;
+    int compression = 0; ///< 0 (none) .. 9
+  };
+  template <typename T> void make_growing(const std::string& name, const Growing& layout, T fill) const {
+    make_growing_raw(name, layout, type_of<T>(), &fill);
+  }
+  template <typename T> void write_frame(const std::string& name, hsize_t frame, std::span<const T> values) const {
+    write_frame_raw(name, frame, values.data(), type_of<T>(), values.size());
+  }
+  int compression(const std::string& name) const;
+  void set_frames(const std::string& name, hsize_t n_frames) const;
+  /// A second name for the same dataset.
+  void link(const std::string& name, const std::string& other_name) const;
+  void set_reference(const std::string& object, const std::string& attribute, const std::string& target) const;
+
+  /// Hands all to the operating system so that the file can be read even if the process is killed right afterwards.
+  void flush() const;
+  void close();
+  bool is_open() const { return id_ >= 0; }
+  const std::filesystem::path& path() const { return path_; }
+
+private:
+  hid_t check(hid_t result, const std::string& doing) const;
+  void write_raw(const std::string& name, const void* values, hid_t type, hsize_t n, hsize_t width) const;
+  void rewrite_raw(const std::string& name, const void* values, hid_t type) const;
+  void read_raw(const std::string& name, void* values, hid_t type) const;
+  hsize_t n_values(const std::string& name) const;
+  hsize_t frame_size(const std::string& name) const;
+  void make_growing_raw(const std::string& name, const Growing& layout, hid_t type, const void* fill) const;
+  void write_frame_raw(const std::string& name, hsize_t frame, const void* values, hid_t type, hsize_t n) const;
+  void read_frame_raw(const std::string& name, hsize_t frame, void* values, hid_t type) const;
+  void put_attribute(const std::string& object, const std::string& name, hid_t type, hid_t space,
+                     const void* values) const;
+
+  std::filesystem::path path_;
+  Handle id_;
+};
+
+} // namespace boba::hdf5

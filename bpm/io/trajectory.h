@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/io/output_file.h"
+#include "bpm/packing/snapshot.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace boba {
+
+/// What a trajectory says about where it comes from; stored under /parameters.
+struct TrajectoryOrigin {
+  std::string scene; ///< text of the scene file
+  std::uint64_t seed = 0;
+  std::string version;
+  std::string git_hash;
+  std::string author = "unknown"; ///< H5MD wants a name
+};
+
+struct TrajectoryOptions {
+  bool velocity = false; ///< store velocities; every snapshot then needs them
+  int compression = 0;   ///< 0 (none, fastest) .. 9 of the node data
+};
+
+/// Writes an H5MD 1.1 file frame by frame: positions and images, box, each grain's centre and stress, strain, and once
+/// the bonds, the grains and the origin. docs/formats.md describes every dataset.
+///
+/// The file can be read after each write(), also by another process and also when this one is killed. A frame whose
+/// step is the last one's is skipped, so the end of one stage and the begin of the next may both be offered. Source: P.
+/// de Buyl, P. H. Colberg & F. Hoefling, Comput. Phys. Commun. 185, 1546 (2014); H5MD 1.1.
+class TrajectoryWriter {
+public:
+  /// \throws std::runtime_error when the file exists (FileMode::create) or cannot be written.
+  TrajectoryWriter(const std::filesystem::path& path, const Topology& topology, const TrajectoryOrigin& origin,
+                   const TrajectoryOptions& options = {}, FileMode mode = FileMode::create);
+  /// Goes on with a file after its last frame up to `last_step`; later frames and a torn one are removed.
+  /// A file that was not closed (its run was killed) is copied frame by frame, which takes its size in disk space once
+  /// more. \throws std::runtime_error when the file is missing, damaged, or of another packing.
+  static TrajectoryWriter go_on(const std::filesystem::path& path, const Topology& topology, std::int64_t last_step);
+
+  TrajectoryWriter(TrajectoryWriter&&) noexcept;
+  TrajectoryWriter& operator=(TrajectoryWriter&&) noexcept;
+  ~TrajectoryWriter();
+
+  /// \throws std::invalid_argument when the snapshot lacks a part or goes back in time, std::runtime_error when writing
+  /// fails.
+  void write(const Snapshot& snapshot);
+  std::int64_t n_frames() const;
+  void close();
+
+private:
+  struct Impl;
+  explicit TrajectoryWriter(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Reads what TrajectoryWriter wrote, also from a run that goes on or was killed: only frames that are complete count.
+class TrajectoryReader {
+public:
+  /// \throws InputError when the file is missing, damaged or not a trajectory of Boba.
+  explicit TrajectoryReader(const std::filesystem::path& path);
+  TrajectoryReader(TrajectoryReader&&) noexcept;
+  TrajectoryReader& operator=(TrajectoryReader&&) noexcept;
+  ~TrajectoryReader();
+
+  std::int64_t n_frames() const { return static_cast<std::int64_t>(steps_.size()); }
+  const std::vector<std::int64_t>& steps() const { return steps_; }
+  const Topology& topology() const { return topology_; }
+  const TrajectoryOrigin& origin() const { return origin_; }
+  bool has_velocity() const { return has_velocity_; }
+
+  /// Frame 0 .. n_frames() - 1, or counted from the end: -1 is the last. Positions are unwrapped.
+  /// \throws InputError for a frame that is not there.
+  Snapshot snapshot(std::int64_t frame) const;
+  /// The frame of this step. \throws InputError when there is none.
+  std::int64_t frame_of_step(std::int64_t step) const;
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+  std::vector<std::int64_t> steps_;
+  Topology topology_;
+  TrajectoryOrigin origin_;
+  bool has_velocity_ = false;
+};
+
+} // namespace boba
