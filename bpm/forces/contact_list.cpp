@@ -10,43 +10,29 @@
 namespace boba {
 
 ContactList::ContactList(const LaneLayout& layout, double diameter, double skin)
-    : layout_(layout), diameter_(diameter), skin_(skin), first_node_(layout.n_grains() + 1, 0),
-      bounds_(layout.n_grains()), rows_(layout.n_grains()) {
+    : layout_(layout), diameter_(diameter), skin_(skin), grids_(layout.n_grains()), bounds_(layout.n_grains()),
+      rows_(layout.n_grains()) {
   if (layout.size() > std::numeric_limits<std::int32_t>::max()) {
     throw std::invalid_argument("contact list: the packing has more than 7e8 nodes, the most that one process handles");
   }
-  for (int g = 0; g < layout.n_grains(); ++g) {
-    first_node_[g + 1] = first_node_[g] + layout.n_nodes(g);
-  }
-  position_.resize(first_node_.back());
 }
 
-std::span<const Vector3> ContactList::nodes_of(int grain) const {
-  return std::span(position_).subspan(first_node_[grain], layout_.n_nodes(grain));
-}
-
-void ContactList::copy_positions(const LaneState& state) {
+void ContactList::sort_into_grids(const LaneState& state) {
   reference_ = state.x;
-  const std::vector<Block>& blocks = layout_.blocks();
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int b = 0; b < static_cast<int>(blocks.size()); ++b) {
-    const Block& block = blocks[b];
-    for (int lane = 0; lane < block.n_lanes; ++lane) {
-      const int g = block.grain[lane];
-      if (g < 0) {
-        continue;
+  for (int g = 0; g < layout_.n_grains(); ++g) {
+    thread_local std::vector<Vector3> nodes;
+    nodes.resize(layout_.n_nodes(g));
+    Bounds bounds;
+    for (int node = 0; node < layout_.n_nodes(g); ++node) {
+      for (int c = 0; c < 3; ++c) {
+        nodes[node][c] = state.x[layout_.index(g, node, c)];
       }
-      Bounds bounds;
-      for (int node = 0; node < block.n_nodes; ++node) {
-        Vector3& x = position_[first_node_[g] + node];
-        for (int c = 0; c < 3; ++c) {
-          x[c] = state.x[layout_.index(g, node, c)];
-        }
-        bounds.low = bounds.low.cwiseMin(x);
-        bounds.high = bounds.high.cwiseMax(x);
-      }
-      bounds_[g] = bounds;
+      bounds.low = bounds.low.cwiseMin(nodes[node]);
+      bounds.high = bounds.high.cwiseMax(nodes[node]);
     }
+    bounds_[g] = bounds;
+    grids_[g] = GrainGrid(nodes, bounds, diameter_ + skin_);
   }
 }
 
@@ -62,7 +48,7 @@ void ContactList::collect_images(const std::vector<std::vector<NeighbourGrain>>&
 
 void ContactList::build(const LaneState& state, const Box& box,
                         const std::vector<const NetworkData*>& network_of_grain) {
-  copy_positions(state);
+  sort_into_grids(state);
   const int n_grains = layout_.n_grains();
   const double reach = diameter_ + skin_;
   std::vector<std::vector<NeighbourGrain>> neighbours(n_grains);
@@ -104,21 +90,22 @@ bool bonded_across(const NetworkData& network, const CandidatePair& pair, const 
 
 void ContactList::build_rows(int grain, const std::vector<NeighbourGrain>& neighbours, const Box& box,
                              const NetworkData& network) {
-  const ContactSearch search(nodes_of(grain), bounds_[grain], diameter_ + skin_);
-  std::vector<CandidatePair> pairs;
+  thread_local std::vector<CandidatePair> pairs;
+  pairs.clear();
   std::vector<std::int32_t> image_index;
   for (int k = 0; k < static_cast<int>(neighbours.size()); ++k) {
     const ImageVector& n = neighbours[k].image;
     const Vector3 shift = box.h() * Vector3(n.a, n.b, n.c);
-    search.add_neighbour(k, nodes_of(neighbours[k].other), shift, pairs);
+    add_pairs_between(grids_[grain], grids_[neighbours[k].other], shift, k, pairs);
     image_index.push_back(
         static_cast<std::int32_t>(std::lower_bound(images_.begin(), images_.end(), n) - images_.begin()));
   }
-  search.add_own(network, pairs);
+  add_pairs_inside(grids_[grain], network, pairs);
   const auto own_image =
       static_cast<std::int32_t>(std::lower_bound(images_.begin(), images_.end(), ImageVector{}) - images_.begin());
 
-  std::vector<SortedPair> sorted;
+  thread_local std::vector<SortedPair> sorted;
+  sorted.clear();
   sorted.reserve(pairs.size());
   for (const CandidatePair& pair : pairs) {
     const bool own = pair.neighbour < 0;
@@ -207,7 +194,10 @@ std::int64_t ContactList::n_candidates() const {
 }
 
 std::size_t ContactList::bytes() const {
-  std::size_t bytes = reference_.capacity() * sizeof(double) + position_.capacity() * sizeof(Vector3);
+  std::size_t bytes = reference_.capacity() * sizeof(double);
+  for (const GrainGrid& grid : grids_) {
+    bytes += grid.bytes();
+  }
   for (const Rows& rows : rows_) {
     bytes += (rows.own.capacity() + rows.other.capacity() + rows.image.capacity()) * sizeof(std::int32_t);
   }

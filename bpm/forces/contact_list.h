@@ -41,11 +41,10 @@ private:
     std::vector<std::int32_t> own, other, image;
     std::int64_t n_wide = 0; ///< the first n_wide candidates have their other node in a full block
   };
-  void copy_positions(const LaneState& state);
+  void sort_into_grids(const LaneState& state);
   void collect_images(const std::vector<std::vector<NeighbourGrain>>& neighbours);
   void build_rows(int grain, const std::vector<NeighbourGrain>& neighbours, const Box& box,
                   const NetworkData& network);
-  std::span<const Vector3> nodes_of(int grain) const;
   double largest_displacement(const LaneState& state) const;
 
   const LaneLayout& layout_;
@@ -55,8 +54,7 @@ private:
   Matrix3 deformation_ = Matrix3::Identity(); ///< of the cell since the list was built
   double bound_ = 0.0;                        ///< on any node's displacement relative to that, d
   AlignedVector reference_;                   ///< positions when the list was built, lane layout
-  std::vector<Vector3> position_;             ///< the same, grain by grain
-  std::vector<std::int64_t> first_node_;
+  std::vector<GrainGrid> grids_;
   std::vector<Bounds> bounds_;
   std::vector<ImageVector> images_; ///< sorted
   std::vector<Rows> rows_;

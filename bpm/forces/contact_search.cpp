@@ -47,87 +47,121 @@ std::vector<NeighbourGrain> neighbour_grains(int g, std::span<const Bounds> boun
   return found;
 }
 
-ContactSearch::ContactSearch(std::span<const Vector3> own, const Bounds& bounds, double reach)
-    : own_(own), low_(bounds.low), reach_(reach), inverse_cell_(1.0 / reach) {
-  inflated_.low = bounds.low.array() - reach;
-  inflated_.high = bounds.high.array() + reach;
-  std::int64_t n = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    n_cells_[axis] = 1 + static_cast<int>((bounds.high[axis] - bounds.low[axis]) * inverse_cell_);
-    n *= n_cells_[axis];
-  }
-  first_.assign(n + 1, 0);
-  std::vector<std::int32_t> cell(own.size());
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    cell[i] = (cell_coordinate(own[i][2], 2) * n_cells_[1] + cell_coordinate(own[i][1], 1)) * n_cells_[0] +
-              cell_coordinate(own[i][0], 0);
-    ++first_[cell[i] + 1];
-  }
-  for (std::int64_t k = 0; k < n; ++k) {
-    first_[k + 1] += first_[k];
-  }
-  std::vector<std::int32_t> next(first_.begin(), first_.end() - 1);
-  node_.resize(own.size());
-  sorted_.resize(own.size());
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    const std::int32_t at = next[cell[i]]++;
-    node_[at] = static_cast<std::int32_t>(i);
-    sorted_[at] = own[i];
-  }
-}
+namespace {
 
-int ContactSearch::cell_coordinate(double x, int axis) const {
-  return std::clamp(static_cast<int>((x - low_[axis]) * inverse_cell_), 0, n_cells_[axis] - 1);
-}
-
-/// Calls visit(own node) for every own node closer than the reach to x, which lies inside the inflated bounds.
-template <class Visit> void ContactSearch::visit_near(const Vector3& x, Visit&& visit) const {
+/// First and last cell along an axis that a point's neighbours can be in, within the grid.
+struct CellRange {
   int from[3], to[3];
+};
+
+CellRange cells_around(const GrainGrid& grid, const Vector3& low, const Vector3& high) {
+  CellRange range;
   for (int axis = 0; axis < 3; ++axis) {
-    const int cell = static_cast<int>(std::floor((x[axis] - low_[axis]) * inverse_cell_));
-    from[axis] = std::max(cell - 1, 0);
-    to[axis] = std::min(cell + 1, n_cells_[axis] - 1);
+    range.from[axis] = std::max(grid.coordinate(low[axis], axis), 0);
+    range.to[axis] = std::min(grid.coordinate(high[axis], axis), grid.cells(axis) - 1);
   }
-  const double reach2 = reach_ * reach_;
-  for (int cz = from[2]; cz <= to[2]; ++cz) {
-    for (int cy = from[1]; cy <= to[1]; ++cy) {
-      // Cells along x are neighbours in memory: one run of nodes.
-      const std::int64_t row = (static_cast<std::int64_t>(cz) * n_cells_[1] + cy) * n_cells_[0];
-      for (std::int32_t k = first_[row + from[0]]; from[0] <= to[0] && k < first_[row + to[0] + 1]; ++k) {
-        if ((sorted_[k] - x).squaredNorm() < reach2) {
-          visit(node_[k]);
+  return range;
+}
+
+/// Calls visit(begin, end) with the places of every row of cells in the range.
+template <class Visit> void for_each_row(const GrainGrid& grid, const CellRange& range, Visit&& visit) {
+  if (range.from[0] > range.to[0]) {
+    return;
+  }
+  for (int z = range.from[2]; z <= range.to[2]; ++z) {
+    for (int y = range.from[1]; y <= range.to[1]; ++y) {
+      visit(grid.begin(range.from[0], y, z), grid.begin(range.to[0] + 1, y, z));
+    }
+  }
+}
+
+/// Collects the places of a grid's nodes near a point, row by row.
+class NearPlaces {
+public:
+  NearPlaces(const GrainGrid& grid)
+      : kernel_(kernels::best_table().near_places), columns_(grid.columns()), reach2_(grid.reach() * grid.reach()),
+        found_(grid.size() + 8) {}
+
+  void clear() { n_ = 0; }
+  void add_row(std::int32_t begin, std::int32_t end, const Vector3& x) {
+    n_ += kernel_(columns_, begin, end, x.data(), reach2_, found_.data() + n_);
+  }
+  std::span<const std::int32_t> places() const { return std::span(found_).first(n_); }
+
+private:
+  decltype(kernels::KernelTable::near_places) kernel_;
+  kernels::SortedNodes columns_;
+  double reach2_;
+  std::vector<std::int32_t> found_;
+  std::int32_t n_ = 0;
+};
+
+} // namespace
+
+void add_pairs_between(const GrainGrid& own, const GrainGrid& other, const Vector3& shift, int neighbour,
+                       std::vector<CandidatePair>& pairs) {
+  const Vector3 margin = Vector3::Constant(own.reach());
+  const CellRange overlap = cells_around(other, own.bounds().low - margin - shift, own.bounds().high + margin - shift);
+  NearPlaces near(own);
+  for_each_row(other, overlap, [&](std::int32_t begin, std::int32_t end) {
+    for (std::int32_t theirs = begin; theirs < end; ++theirs) {
+      const Vector3 x = other.position(theirs) + shift;
+      if (!own.near(x)) {
+        continue;
+      }
+      near.clear();
+      for_each_row(own, cells_around(own, x - margin, x + margin),
+                   [&](std::int32_t first, std::int32_t last) { near.add_row(first, last, x); });
+      for (const std::int32_t ours : near.places()) {
+        pairs.push_back({own.node(ours), neighbour, other.node(theirs)});
+      }
+    }
+  });
+}
+
+namespace {
+
+/// Unbonded partners of the node at place `at` of cell (x, y, z) among the half of the surrounding cells that come later:
+/// the rest of its row, and the rows after.
+void find_later(const GrainGrid& own, std::int32_t at, int x, int y, int z, NearPlaces& near) {
+  const Vector3 position = own.position(at);
+  const int left = std::max(x - 1, 0), right = std::min(x + 2, own.cells(0));
+  near.clear();
+  near.add_row(at + 1, own.begin(right, y, z), position);
+  if (y + 1 < own.cells(1)) {
+    near.add_row(own.begin(left, y + 1, z), own.begin(right, y + 1, z), position);
+  }
+  if (z + 1 < own.cells(2)) {
+    for (int row = std::max(y - 1, 0); row < std::min(y + 2, own.cells(1)); ++row) {
+      near.add_row(own.begin(left, row, z + 1), own.begin(right, row, z + 1), position);
+    }
+  }
+}
+
+} // namespace
+
+void add_pairs_inside(const GrainGrid& own, const NetworkData& network, std::vector<CandidatePair>& pairs) {
+  std::vector<std::int32_t> bonded_to(own.size(), -1);
+  NearPlaces near(own);
+  for (int z = 0; z < own.cells(2); ++z) {
+    for (int y = 0; y < own.cells(1); ++y) {
+      for (int x = 0; x < own.cells(0); ++x) {
+        for (std::int32_t at = own.begin(x, y, z); at < own.begin(x + 1, y, z); ++at) {
+          const std::int32_t i = own.node(at);
+          for (const std::int32_t* j = network.partners_begin(i); j != network.partners_end(i); ++j) {
+            bonded_to[*j] = i;
+          }
+          find_later(own, at, x, y, z, near);
+          for (const std::int32_t place : near.places()) {
+            const std::int32_t j = own.node(place);
+            if (bonded_to[j] != i) {
+              pairs.push_back({i, -1, j});
+              pairs.push_back({j, -1, i});
+            }
+          }
         }
       }
     }
-  }
-}
-
-void ContactSearch::add_neighbour(int neighbour, std::span<const Vector3> other, const Vector3& shift,
-                                  std::vector<CandidatePair>& pairs) const {
-  const Vector3 low = inflated_.low - shift, high = inflated_.high - shift;
-  for (std::size_t j = 0; j < other.size(); ++j) {
-    const Vector3& x = other[j];
-    const bool inside = (x[0] > low[0]) & (x[0] < high[0]) & (x[1] > low[1]) & (x[1] < high[1]) & (x[2] > low[2]) &
-                        (x[2] < high[2]);
-    if (inside) {
-      visit_near(x + shift,
-                 [&](std::int32_t i) { pairs.push_back({i, neighbour, static_cast<std::int32_t>(j)}); });
-    }
-  }
-}
-
-void ContactSearch::add_own(const NetworkData& network, std::vector<CandidatePair>& pairs) const {
-  std::vector<std::int32_t> bonded_to(own_.size(), -1);
-  for (std::int32_t i = 0; i < static_cast<std::int32_t>(own_.size()); ++i) {
-    for (const std::int32_t* j = network.partners_begin(i); j != network.partners_end(i); ++j) {
-      bonded_to[*j] = i;
-    }
-    visit_near(own_[i], [&](std::int32_t j) {
-      if (j > i && bonded_to[j] != i) {
-        pairs.push_back({i, -1, j});
-        pairs.push_back({j, -1, i});
-      }
-    });
   }
 }
 

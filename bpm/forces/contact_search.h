@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/forces/grain_grid.h"
 #include "bpm/forces/network_data.h"
 #include "bpm/packing/box.h"
 
@@ -10,12 +11,6 @@
 #include <vector>
 
 namespace boba {
-
-/// Axis-aligned bounding box of a grain's nodes, d.
-struct Bounds {
-  Vector3 low = Vector3::Constant(1e300);
-  Vector3 high = Vector3::Constant(-1e300);
-};
 
 /// A lattice translation x + h n.
 struct ImageVector {
@@ -31,7 +26,7 @@ struct NeighbourGrain {
 
 /// All (other grain, image) whose bounds come within `reach` of grain g's, the grain's own images included and the grain
 /// itself not. Exact for any cell, also one smaller than a grain: the integer intervals are solved for axis by axis.
-/// Sorted by (other, image).
+/// Sorted by other.
 std::vector<NeighbourGrain> neighbour_grains(int g, std::span<const Bounds> bounds, const Box& box, double reach);
 
 /// One candidate contact: own node, other grain (index into the neighbour list; -1 is the grain itself) and its node.
@@ -41,32 +36,11 @@ struct CandidatePair {
   std::int32_t node;
 };
 
-/// Finds the pairs of one grain that are closer than a reach, through a grid of cells over the grain's own nodes.
-///
-/// The grid holds all own nodes: no assumption on which of them are at the surface. Of other grains only
-/// the nodes inside the grain's bounds (inflated by the reach) are looked at.
-class ContactSearch {
-public:
-  ContactSearch(std::span<const Vector3> own, const Bounds& bounds, double reach);
+/// Adds the pairs (node of `own`, node of `other` displaced by `shift`) closer than the reach of the grids.
+void add_pairs_between(const GrainGrid& own, const GrainGrid& other, const Vector3& shift, int neighbour,
+                       std::vector<CandidatePair>& pairs);
 
-  /// Pairs of own nodes with nodes of another grain, which is displaced by `shift`.
-  void add_neighbour(int neighbour, std::span<const Vector3> other, const Vector3& shift,
-                     std::vector<CandidatePair>& pairs) const;
-  /// Unbonded pairs inside the grain, each from both sides.
-  void add_own(const NetworkData& network, std::vector<CandidatePair>& pairs) const;
-
-private:
-  int cell_coordinate(double x, int axis) const;
-  template <class Visit> void visit_near(const Vector3& x, Visit&& visit) const;
-
-  std::span<const Vector3> own_;
-  Bounds inflated_;
-  Vector3 low_;
-  double reach_, inverse_cell_;
-  int n_cells_[3];
-  std::vector<std::int32_t> first_; ///< per cell, into sorted_
-  std::vector<std::int32_t> node_;  ///< own nodes, sorted by cell
-  std::vector<Vector3> sorted_;     ///< their positions
-};
+/// Adds the unbonded pairs inside a grain that are closer than the reach, each from both sides.
+void add_pairs_inside(const GrainGrid& own, const NetworkData& network, std::vector<CandidatePair>& pairs);
 
 } // namespace boba

@@ -5,6 +5,7 @@
 #include "bpm/forces/kernels/bond_kernel.h"
 #include "bpm/forces/kernels/contact_kernel.h"
 #include "bpm/forces/kernels/drift_kernel.h"
+#include "bpm/forces/kernels/near_kernel.h"
 
 #define BOBA_STRINGIFY_(x) #x
 #define BOBA_STRINGIFY(x) BOBA_STRINGIFY_(x)
@@ -12,6 +13,6 @@
 namespace boba::kernels {
 
 extern const KernelTable BOBA_KERNEL_TABLE = {BOBA_STRINGIFY(BOBA_KERNEL_ISA), native_lanes, &bond_forces, &drift_block,
-                                              &contact_forces};
+                                              &contact_forces, &near_places};
 
 } // namespace boba::kernels

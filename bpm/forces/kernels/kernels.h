@@ -86,6 +86,11 @@ struct ContactSums {
   std::int64_t n_touching;
 };
 
+/// Nodes of one grain, sorted by cell; columns of coordinates, d.
+struct SortedNodes {
+  const double *x, *y, *z;
+};
+
 struct KernelTable {
   const char* name; ///< "avx512", "avx2" or "baseline"
   int lanes;
@@ -96,6 +101,10 @@ struct KernelTable {
   void (*contacts)(const ContactRows& rows, std::int64_t own_first, const double* x, const double* v, double* f,
                    const ContactParameters&, double* scratch, std::int32_t* scratch_index, bool with_sums,
                    ContactSums&);
+  /// Writes the places in [begin, end) closer than sqrt(reach2) to p into `found`, ascending, and returns their number.
+  /// `found` has room for end - begin + 8 numbers.
+  std::int32_t (*near_places)(const SortedNodes&, std::int32_t begin, std::int32_t end, const double* p, double reach2,
+                              std::int32_t* found);
 };
 
 extern const KernelTable avx512_table;

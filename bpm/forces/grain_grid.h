@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/forces/kernels/kernels.h"
+#include "bpm/packing/box.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace boba {
+
+/// Axis-aligned bounding box of a grain's nodes, d.
+struct Bounds {
+  Vector3 low = Vector3::Constant(1e300);
+  Vector3 high = Vector3::Constant(-1e300);
+};
+
+/// All nodes of one grain in cubic cells of edge `reach` over its bounds, sorted by cell with x running fastest, so that
+/// the cells of a row are one run of nodes. No assumption is made on which nodes are at the surface.
+class GrainGrid {
+public:
+  GrainGrid() = default;
+  GrainGrid(std::span<const Vector3> nodes, const Bounds& bounds, double reach);
+
+  const Bounds& bounds() const { return bounds_; }
+  double reach() const { return reach_; }
+  std::int32_t size() const { return static_cast<std::int32_t>(node_.size()); }
+  int cells(int axis) const { return n_cells_[axis]; }
+  /// Place in the sorted order of the first node of cell (x, y, z); x may be cells(0), the end of the row.
+  std::int32_t begin(int x, int y, int z) const {
+    return first_[(static_cast<std::int64_t>(z) * n_cells_[1] + y) * n_cells_[0] + x];
+  }
+  /// Cell coordinate along an axis, not limited to the grid.
+  int coordinate(double x, int axis) const {
+    return static_cast<int>(std::floor((x - bounds_.low[axis]) * inverse_cell_));
+  }
+  int inside(int coordinate, int axis) const { return std::clamp(coordinate, 0, n_cells_[axis] - 1); }
+  /// False when none of the 27 cells around the one that holds x has a node.
+  bool near(const Vector3& x) const;
+
+  std::int32_t node(std::int32_t place) const { return node_[place]; }
+  Vector3 position(std::int32_t place) const { return {x_[place], y_[place], z_[place]}; }
+  kernels::SortedNodes columns() const { return {x_.data(), y_.data(), z_.data()}; }
+  std::size_t bytes() const {
+    return (first_.capacity() + node_.capacity()) * sizeof(std::int32_t) + 3 * x_.capacity() * sizeof(double) +
+           near_.capacity();
+  }
+
+private:
+  Bounds bounds_;
+  double reach_ = 1.0, inverse_cell_ = 1.0;
+  int n_cells_[3] = {0, 0, 0};
+  std::vector<std::int32_t> first_;
+  std::vector<std::int32_t> node_;
+  std::vector<double> x_, y_, z_;
+  std::vector<std::uint8_t> near_; ///< over the cells and one ring around them
+};
+
+} // namespace boba
