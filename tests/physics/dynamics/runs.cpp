@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whole runs: conservation, flips, threads, restarts, walls, blow-up.
+#include "bpm/dynamics/simulation.h"
+#include "bpm/dynamics/stepper.h"
+#include "tests/support/small_packings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace boba::test {
+namespace {
+
+const Box tilted({0.3, -1.0, 2.0}, {12.0, 11.0, 13.0}, {5.0, -4.0, 4.5});
+
+Packing nine_grains(double alpha = 2.0) { return small_packing({.box = tilted, .n_grains = 9, .alpha = alpha}); }
+
+void expect_same_bits(const Snapshot& a, const Snapshot& b) {
+  EXPECT_EQ(a.step, b.step);
+  EXPECT_EQ(a.strain, b.strain);
+  EXPECT_EQ(a.box.h(), b.box.h());
+  for (std::size_t i = 0; i < a.position.size(); ++i) {
+    ASSERT_EQ(a.position[i], b.position[i]) << "node " << i;
+    ASSERT_EQ(a.velocity[i], b.velocity[i]) << "node " << i;
+    ASSERT_EQ(a.force[i], b.force[i]) << "node " << i;
+  }
+}
+
+constexpr Simulation::Parts all_parts = {.velocity = true, .force = true};
+
+/// Asks for the whole stress at every `interval`-th step.
+class Watcher : public Observer {
+public:
+  explicit Watcher(std::int64_t interval) : interval_(interval) {}
+  bool wants(const StepForecast& forecast) override { return forecast.step % interval_ == 0; }
+  void observe(const Simulation& simulation, const StageProgress&) override {
+    pressures.push_back(simulation.totals().pressure);
+  }
+  std::vector<double> pressures;
+
+private:
+  std::int64_t interval_;
+};
+
+ShearStage shear_stage(Remap remap = Remap::positions) {
+  return {.rate = 2e-2, .strain = 0.6, .remap = remap, .barostat = Barostat{.pressure = 0.05, .gain = 0.05}};
+}
+
+Snapshot sheared(int threads, std::int64_t watch = 1000000, Remap remap = Remap::positions) {
+  Simulation simulation(nine_grains(), {}, {.threads = threads});
+  Watcher watcher(watch);
+  std::vector<Observer*> observers = {&watcher};
+  simulation.run(0, shear_stage(remap), observers);
+  return simulation.snapshot(all_parts);
+}
+
+TEST(Runs, DoNotDependOnThreads) {
+  const Snapshot one = sheared(1);
+  for (const int threads : {2, 3, 4}) {
+    expect_same_bits(one, sheared(threads));
+  }
+}
+
+TEST(Runs, DoNotDependOnWhoIsWatching) { expect_same_bits(sheared(2), sheared(2, 7)); }
+
+TEST(Runs, ContinueBitForBitFromAnyStep) {
+  for (const Remap remap : {Remap::positions, Remap::velocities}) {
+    const Snapshot whole = sheared(2, 1000000, remap);
+    for (const std::int64_t stop_at : {1, 2, 37, 150, 299}) {
+      Simulation first(nine_grains(), {}, {.threads = 2});
+      ASSERT_EQ(first.run(0, shear_stage(remap), {}, [&] { return first.step() == stop_at; }), RunOutcome::stopped);
+      const SavedState saved = first.save();
+      Simulation second(nine_grains(), {}, {.threads = 1});
+      second.restore(saved);
+      EXPECT_EQ(second.stage_index(), 0);
+      second.run(0, shear_stage(remap), {});
+      expect_same_bits(whole, second.snapshot(all_parts));
+    }
+  }
+}
+
+// The same lattice in other cell vectors: a flip must change nothing. The barostat is on, so that the pressure is in the loop.
+TEST(Runs, FlipChangesNothing) {
+  Stepper flipping(nine_grains(), {}, {});
+  Box upright = tilted;
+  Matrix3 h = upright.h();
+  h.col(1) -= h.col(0); // xy: 5 -> -7, beyond half of Lx = 12: flipped back at the first move of the cell
+  upright.set_h(h);
+  Packing other = nine_grains();
+  other.box = upright;
+  Stepper leaning(other, {}, {});
+  int flips = 0;
+  for (Stepper* stepper : {&flipping, &leaning}) {
+    stepper->start();
+  }
+  for (int step = 0; step < 300; ++step) {
+    for (Stepper* stepper : {&flipping, &leaning}) {
+      const double xy = stepper->box().xy();
+      stepper->advance(Virial::trace);
+      stepper->move_cell({.shear = 0.05, .dilation = 0.05 * (stepper->pressure() - 0.05)});
+      flips += std::abs(stepper->box().xy() - xy) > 1.0;
+    }
+  }
+  EXPECT_GE(flips, 3);
+  const Snapshot a = flipping.snapshot(all_parts), b = leaning.snapshot(all_parts);
+  for (std::size_t i = 0; i < a.position.size(); ++i) {
+    ASSERT_LT((a.position[i] - b.position[i]).norm(), 1e-8);
+    ASSERT_LT((a.force[i] - b.force[i]).norm(), 1e-8);
+  }
+  EXPECT_NEAR(flipping.pressure(), leaning.pressure(), 1e-9);
+}
+
+TEST(Runs, FlipLeavesForcesAndPositionsAlone) {
+  Packing packing = nine_grains();
+  Box box = packing.box;
+  Matrix3 h = box.h();
+  h.col(2) += h.col(1);
+  h.col(1) += 2.0 * h.col(0);
+  box.set_h(h);
+  packing.box = box;
+  Box flipped = box;
+  ASSERT_TRUE(flipped.flip());
+  Packing same = packing;
+  same.box = flipped;
+  Stepper a(packing, {}, {}), b(same, {}, {});
+  a.evaluate_only();
+  b.evaluate_only();
+  const Snapshot sa = a.snapshot(all_parts), sb = b.snapshot(all_parts);
+  for (std::size_t i = 0; i < sa.force.size(); ++i) {
+    EXPECT_EQ(sa.position[i], sb.position[i]);
+    EXPECT_LT((sa.force[i] - sb.force[i]).norm(), 1e-12);
+  }
+}
+
+TEST(Runs, MomentumIsConserved) {
+  Stepper stepper(nine_grains(12.0), {}, {});
+  const auto momentum = [&] {
+    Vector3 sum = Vector3::Zero();
+    for (const Vector3& v : stepper.snapshot(all_parts).velocity) {
+      sum += v;
+    }
+    return sum;
+  };
+  const Vector3 before = momentum();
+  stepper.start();
+  for (int step = 0; step < 500; ++step) {
+    stepper.advance(Virial::none);
+  }
+  EXPECT_LT((momentum() - before).norm(), 1e-11);
+}
+
+// Angular momentum of a free, damped, violently shaken grain.
+TEST(Runs, AngularMomentumOfAFreeGrainIsConserved) {
+  Packing packing = small_packing({.box = Box({0, 0, 0}, {40, 40, 40}, {0, 0, 0}, {false, false, false}),
+                                   .n_grains = 1,
+                                   .radius = 3.0,
+                                   .alpha = 5.0,
+                                   .speed = 0.2});
+  Stepper stepper(packing, {}, {});
+  const auto angular_momentum = [&] {
+    const Snapshot now = stepper.snapshot(all_parts);
+    Vector3 sum = Vector3::Zero();
+    for (std::size_t i = 0; i < now.position.size(); ++i) {
+      sum += (now.position[i] - Vector3(20, 20, 20)).cross(now.velocity[i]);
+    }
+    return sum;
+  };
+  stepper.start();
+  const Vector3 before = angular_momentum();
+  for (int step = 0; step < 1000; ++step) {
+    stepper.advance(Virial::none);
+  }
+  EXPECT_LT((angular_momentum() - before).norm(), 1e-10);
+}
+
+// Without damping and many-body term there is an energy; velocity Verlet keeps it to second order in dt.
+TEST(Runs, EnergyOfAnUndampedPairwisePackingIsKeptToSecondOrder) {
+  const auto drift = [](double dt) {
+    Stepper stepper(small_packing({.box = tilted, .n_grains = 9, .alpha = 0.0}), {.gamma = 0.0}, {.dt = dt});
+    stepper.start();
+    double lowest = 1e300, highest = -1e300;
+    for (int step = 0; step < static_cast<int>(10.0 / dt); ++step) {
+      stepper.advance(Virial::full);
+      const Totals totals = stepper.totals();
+      const double energy = totals.kinetic_energy + totals.elastic_energy;
+      lowest = std::min(lowest, energy);
+      highest = std::max(highest, energy);
+    }
+    return (highest - lowest) / highest;
+  };
+  const double coarse = drift(0.02), fine = drift(0.01);
+  EXPECT_LT(fine, 1e-3);
+  EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.4);
+}
+
+TEST(Runs, CompressSettlesAtItsPressure) {
+  Simulation simulation(small_packing({.box = Box({0, 0, 0}, {13, 13, 13}), .n_grains = 9, .jitter = 0.0, .speed = 0.0}), {},
+                        {.threads = 2});
+  const CompressStage stage = {.barostat = {.pressure = 0.05}, .rate = 2e-3};
+  ASSERT_EQ(simulation.run(0, stage, {}), RunOutcome::finished);
+  simulation.run(1, HoldStage{.time = 0.1}, {});
+  Watcher watcher(1);
+  std::vector<Observer*> observers = {&watcher};
+  simulation.run(2, HoldStage{.time = 0.1}, observers);
+  EXPECT_NEAR(simulation.totals().pressure / 0.05, 1.0, 2e-3);
+  EXPECT_LT(simulation.totals().kinetic_energy, 2e-4 * simulation.totals().elastic_energy);
+}
+
+// A grain on a wall is half of two mirror-image grains in contact, while no node touches a neighbour's image.
+TEST(Runs, WallIsTheMirrorImage) {
+  auto ball = small_ball(2.5, 3);
+  auto mirrored = std::make_shared<GrainTemplate>(*ball);
+  double lowest = 0.0;
+  for (Vector3& x : mirrored->position) {
+    lowest = std::min(lowest, x[2]);
+    x[2] = -x[2];
+  }
+  const Box open({-20, -20, -20}, {40, 40, 40}, {0, 0, 0}, {false, false, false});
+  const double gap = 0.47; // from the plane z = 0 to the lowest node: it overlaps with its image
+  Placement above, below;
+  above.grain.alpha = below.grain.alpha = 2.0;
+  below.grain.template_index = 1;
+  above.centre[2] = -lowest + gap;
+  below.centre[2] = lowest - gap;
+  Stepper pair(make_packing(open, {ball, mirrored}, {above, below}), {}, {});
+  Stepper wall(make_packing(open, {ball}, {above}), {}, {});
+  wall.forces().walls() = {Wall{}};
+  pair.start();
+  wall.start();
+  for (int step = 0; step < 50; ++step) {
+    pair.advance(Virial::full);
+    wall.advance(Virial::full);
+  }
+  const Snapshot a = pair.snapshot(all_parts), b = wall.snapshot(all_parts);
+  EXPECT_GT(wall.forces().contact_totals().largest_overlap, 0.0);
+  double moved = 0.0;
+  for (std::size_t i = 0; i < b.position.size(); ++i) {
+    EXPECT_LT((a.position[i] - b.position[i]).norm(), 1e-12);
+    moved = std::max(moved, b.velocity[i].norm());
+  }
+  EXPECT_GT(moved, 1e-3);
+}
+
+TEST(Runs, PressBetweenClampsStretchesAsAsked) {
+  const Box open({-20, -20, -20}, {40, 40, 40}, {0, 0, 0}, {false, false, false});
+  Simulation simulation(make_packing(open, {small_ball(4.0, 5)}, {Placement{}}), {}, {});
+  const PressStage stage = {.ends = PressStage::Ends::clamps, .velocity = 0.01, .strain = 0.05, .clamp_thickness = 1.5};
+  simulation.run(0, stage, {});
+  double low = 1e300, high = -1e300;
+  for (const Vector3& x : simulation.packing().position) {
+    low = std::min(low, x[2]);
+    high = std::max(high, x[2]);
+  }
+  const double free_height = high - low - 2.0 * stage.clamp_thickness;
+  EXPECT_NEAR(simulation.end_gap(), 0.95 * free_height, 2.0 * stage.velocity * 0.1); // to one step
+  EXPECT_GT(simulation.end_forces()[0], 0.0); // squeezed ends push apart
+  EXPECT_NEAR(simulation.end_forces()[0], simulation.end_forces()[1], 0.2 * simulation.end_forces()[1]);
+}
+
+TEST(Runs, ShearStrainAndTiltAgree) {
+  const Snapshot end = sheared(1);
+  EXPECT_NEAR(end.strain, 0.6, 1e-12);
+  EXPECT_EQ(end.step, 300);
+}
+
+TEST(Runs, BlowUpNamesNodeGrainStepAndCause) {
+  Packing packing = nine_grains();
+  packing.velocity[100] = {80.0, 0.0, 0.0};
+  Simulation simulation(packing, {}, {});
+  try {
+    simulation.run(0, HoldStage{.time = 10.0}, {});
+    FAIL() << "a node at 8 d a step was not noticed";
+  } catch (const BlowUp& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("step 1"), std::string::npos) << message;
+    EXPECT_NE(message.find("node"), std::string::npos) << message;
+    EXPECT_NE(message.find("grain"), std::string::npos) << message;
+    EXPECT_NE(message.find("dt"), std::string::npos) << message;
+  }
+}
+
+TEST(Runs, NotANumberIsNoticedAtOnce) {
+  Packing packing = nine_grains();
+  packing.position[5][1] = std::nan("");
+  Simulation simulation(packing, {}, {});
+  EXPECT_THROW(simulation.run(0, HoldStage{.time = 10.0}, {}), BlowUp);
+}
+
+TEST(Runs, TooLargeATimeStepIsNoticedWithinAHundredSteps) {
+  Simulation simulation(small_packing({.box = Box({0, 0, 0}, {14, 14, 14}), .n_grains = 9, .alpha = 12.0, .jitter = 1e-3}), {},
+                        {.dt = 0.6});
+  EXPECT_THROW(simulation.run(0, HoldStage{.time = 1000.0}, {}), BlowUp);
+  EXPECT_LE(simulation.step(), 100);
+}
+
+} // namespace
+} // namespace boba::test

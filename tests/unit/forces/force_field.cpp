@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The lane kernels and the contact search against plain loops over all pairs in long double.
+#include "bpm/forces/force_field.h"
+#include "tests/support/plain_forces.h"
+#include "tests/support/small_packings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace boba::test {
+namespace {
+
+struct Evaluated {
+  std::vector<Vector3> force;
+  Matrix3 virial = Matrix3::Zero();
+  double virial_trace = 0.0;
+  std::int64_t n_touching = 0;
+};
+
+Evaluated evaluate(const Packing& packing, Virial virial, const Material& material = {},
+                   const Matrix3& residual_rate = Matrix3::Zero()) {
+  const LaneLayout layout(packing);
+  LaneState state(packing, layout);
+  ForceField forces(packing, layout, material, 0.3);
+  forces.evaluate(state, packing.box, {0.0, 0.0, virial, residual_rate});
+  Evaluated evaluated;
+  for (int g = 0; g < packing.n_grains(); ++g) {
+    for (int node = 0; node < layout.n_nodes(g); ++node) {
+      evaluated.force.emplace_back(state.f[layout.index(g, node, 0)], state.f[layout.index(g, node, 1)],
+                                   state.f[layout.index(g, node, 2)]);
+    }
+    const Tensor6& t = forces.grain_sums()[g].virial;
+    Matrix3 m;
+    m << t[0], t[3], t[4], t[3], t[1], t[5], t[4], t[5], t[2];
+    evaluated.virial += m;
+    evaluated.virial_trace += forces.grain_sums()[g].virial_trace;
+  }
+  evaluated.n_touching = forces.contact_totals().n_touching;
+  return evaluated;
+}
+
+void expect_agreement(const Packing& packing, const Material& material = {},
+                      const Matrix3& residual_rate = Matrix3::Zero(), int n_images = 2) {
+  const PlainForces plain = plain_forces(packing, material, n_images, residual_rate);
+  const Evaluated ours = evaluate(packing, Virial::full, material, residual_rate);
+  double largest = 0.0;
+  for (const Vector3& f : plain.force) {
+    largest = std::max(largest, f.norm());
+  }
+  for (std::size_t i = 0; i < plain.force.size(); ++i) {
+    ASSERT_LT((ours.force[i] - plain.force[i]).norm(), 2e-14 * largest) << "node " << i;
+  }
+  EXPECT_LT((ours.virial - plain.virial).norm(), 1e-12 * plain.virial.norm());
+  EXPECT_NEAR(ours.virial_trace, plain.virial.trace(), 1e-12 * plain.virial.norm());
+  EXPECT_EQ(ours.n_touching, plain.n_contacts);
+  EXPECT_GT(plain.n_contacts, 0);
+}
+
+const Box cube({0.3, -1.0, 2.0}, {12.0, 12.0, 12.0});
+const Box tilted({0.3, -1.0, 2.0}, {12.0, 11.0, 13.0}, {5.0, -4.0, 4.5});
+
+TEST(ForceField, AllAlphasInFullAndRaggedBlocks) {
+  for (const double alpha : {-0.8, 0.0, 2.0, 12.0}) {
+    for (const int n_grains : {1, 2, 7, 8, 9, 17}) {
+      SCOPED_TRACE(testing::Message() << "alpha " << alpha << ", " << n_grains << " grains");
+      const double length = 5.3 * std::cbrt(n_grains);
+      expect_agreement(small_packing({.box = Box({0, 0, 0}, {length, length, length}),
+                                      .n_grains = n_grains,
+                                      .alpha = alpha,
+                                      .least_distance = 4.2}));
+    }
+  }
+}
+
+TEST(ForceField, TiltedCell) { expect_agreement(small_packing({.box = tilted, .n_grains = 9})); }
+
+TEST(ForceField, ImagesWithVelocity) {
+  Matrix3 rate = Matrix3::Zero();
+  rate(0, 1) = 0.3;
+  expect_agreement(small_packing({.box = tilted, .n_grains = 9}), {}, rate);
+}
+
+TEST(ForceField, OtherConstants) {
+  expect_agreement(small_packing({.box = cube}), {.k = 2.5, .gamma = 0.3, .k3 = 20.0, .node_mass = 3.0});
+  expect_agreement(small_packing({.box = cube}), {.gamma = 0.0});
+}
+
+TEST(ForceField, CellSmallerThanAGrain) {
+  // One ball of radius 2.5 in a cell of 4.5: it touches its own images on all sides, some of them twice removed.
+  expect_agreement(small_packing({.box = Box({0, 0, 0}, {4.4, 4.4, 4.4}, {1.5, 0.5, -1.0}), .n_grains = 1}), {},
+                   Matrix3::Zero(), 3);
+}
+
+TEST(ForceField, GrainsFarFromTheCell) {
+  Packing packing = small_packing({.box = tilted, .n_grains = 5});
+  const std::vector<std::int64_t> first = packing.first_nodes();
+  for (int g = 0; g < packing.n_grains(); ++g) { // the same packing, each grain in another image
+    const Vector3 shift = packing.box.h() * Vector3(7 * g, -3 * g, 2 - g);
+    for (std::int64_t node = first[g]; node < first[g + 1]; ++node) {
+      packing.position[node] += shift;
+    }
+  }
+  const Evaluated far = evaluate(packing, Virial::full);
+  const Evaluated near = evaluate(small_packing({.box = tilted, .n_grains = 5}), Virial::full);
+  for (std::size_t i = 0; i < near.force.size(); ++i) {
+    EXPECT_LT((far.force[i] - near.force[i]).norm(), 1e-11);
+  }
+}
+
+TEST(ForceField, OpenDirections) {
+  expect_agreement(small_packing({.box = Box({0, 0, 0}, {12, 12, 12}, {0, 0, 0}, {true, false, false})}));
+}
+
+TEST(ForceField, DifferentTemplatesAndAlphasTogether) {
+  Packing packing = small_packing({.box = cube, .n_grains = 9});
+  packing.templates.push_back(small_ball(2.0, 77));
+  std::vector<Placement> placements;
+  const std::vector<std::int64_t> first = packing.first_nodes();
+  for (int g = 0; g < packing.n_grains(); ++g) {
+    Placement placement;
+    placement.grain = packing.grains[g];
+    placement.grain.template_index = g % 4 == 1;
+    placement.grain.alpha = g % 3 == 0 ? 0.0 : 1.5 * g;
+    for (std::int64_t node = first[g]; node < first[g + 1]; ++node) {
+      placement.centre += packing.position[node] / static_cast<double>(first[g + 1] - first[g]);
+    }
+    placements.push_back(placement);
+  }
+  Packing mixed = make_packing(cube, packing.templates, placements);
+  for (std::size_t i = 0; i < mixed.velocity.size(); ++i) {
+    mixed.velocity[i] = {0.01 * std::sin(static_cast<double>(i)), 0.02 * std::cos(3.0 * static_cast<double>(i)), 0.01};
+  }
+  expect_agreement(mixed);
+}
+
+// The sums must not change what is computed: forces (and the trace that the barostat reads) to the last bit.
+TEST(ForceField, ForcesDoNotDependOnWhatIsSummed) {
+  const Packing packing = small_packing({.box = tilted, .n_grains = 9});
+  const Evaluated none = evaluate(packing, Virial::none);
+  const Evaluated trace = evaluate(packing, Virial::trace);
+  const Evaluated full = evaluate(packing, Virial::full);
+  for (std::size_t i = 0; i < none.force.size(); ++i) {
+    ASSERT_EQ(none.force[i], trace.force[i]);
+    ASSERT_EQ(none.force[i], full.force[i]);
+  }
+  EXPECT_EQ(trace.virial_trace, full.virial_trace);
+}
+
+TEST(ForceField, NewtonsThirdLaw) {
+  const Evaluated ours = evaluate(small_packing({.box = tilted, .n_grains = 9}), Virial::none);
+  Vector3 sum = Vector3::Zero();
+  for (const Vector3& f : ours.force) {
+    sum += f;
+  }
+  EXPECT_LT(sum.norm(), 1e-11);
+}
+
+// A grain that is only moved and turned, at rest or in rigid motion, feels nothing.
+TEST(ForceField, RigidMotionGivesNoForce) {
+  Packing packing =
+      small_packing({.box = Box({0, 0, 0}, {40, 40, 40}), .n_grains = 3, .alpha = 12.0, .jitter = 0.0, .speed = 0.0, .least_distance = 8.0});
+  const Vector3 spin(0.02, -0.05, 0.03), drift(0.3, 0.1, -0.2);
+  for (std::size_t i = 0; i < packing.position.size(); ++i) {
+    packing.velocity[i] = drift + spin.cross(packing.position[i]);
+  }
+  for (const Vector3& f : evaluate(packing, Virial::none).force) {
+    EXPECT_LT(f.norm(), 1e-12); // rounding of coordinates up to 40 d, times k + alpha = 13, over some 15 bonds
+  }
+}
+
+} // namespace
+} // namespace boba::test
