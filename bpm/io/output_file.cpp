@@ -67,6 +67,13 @@ void OutputFile::flush() {
   }
 }
 
+void OutputFile::sync() {
+  flush();
+  if (descriptor_ >= 0 && fsync(descriptor_) != 0) {
+    fail(errno);
+  }
+}
+
 void OutputFile::close() {
   if (gz_ == nullptr && descriptor_ < 0) {
     return;
@@ -124,6 +131,18 @@ void OutputFile::put(std::string_view bytes) {
 void OutputFile::fail(int code) const {
   throw std::runtime_error(
       fmt::format("{}: cannot be written: {}", path_.string(), code != 0 ? std::strerror(code) : "unknown error"));
+}
+
+void sync_folder(const std::filesystem::path& folder) {
+  const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool is_done = descriptor >= 0 && fsync(descriptor) == 0;
+  const int code = errno;
+  if (descriptor >= 0) {
+    ::close(descriptor);
+  }
+  if (!is_done) {
+    throw std::runtime_error(fmt::format("{}: cannot be synced: {}", folder.string(), std::strerror(code)));
+  }
 }
 
 void cut_file(const std::filesystem::path& path, std::uintmax_t length) {

@@ -40,6 +40,8 @@ public:
   }
   /// Hands everything to the operating system, so that it outlives the process.
   void flush();
+  /// Waits until everything is on the disk itself, so that it outlives the machine's power (not for .gz).
+  void sync();
   /// Flushes and closes; without it errors of the last write would go unseen.
   void close();
 
@@ -54,6 +56,10 @@ private:
   int descriptor_ = -1;
   fmt::memory_buffer buffer_;
 };
+
+/// Waits until the names in a folder (a file just made or renamed) are on the disk. \throws std::runtime_error on
+/// failure.
+void sync_folder(const std::filesystem::path& folder);
 
 /// Cuts a file at a length in bytes. \throws std::runtime_error when the system refuses.
 void cut_file(const std::filesystem::path& path, std::uintmax_t length);

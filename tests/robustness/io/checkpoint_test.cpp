@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/io/checkpoint.h"
+#include "bpm/io/input_error.h"
+#include "tests/support/temporary_folder.h"
+
+#include <chrono>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <limits>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+namespace boba {
+namespace {
+
+using test::content_of;
+using test::message_of;
+using test::TemporaryFolder;
+
+CheckpointData sample(std::int64_t step) {
+  CheckpointData data;
+  data.text["scene"] = "seed = 1\n";
+  data.text["empty"] = "";
+  data.text["isa"] = std::string("avx\0 512", 8);
+  data.real["position"] = {
+      0.1, -0.0, 5e-324, std::numeric_limits<double>::infinity(), 1e300, static_cast<double>(step)};
+  data.real["nothing"] = {};
+  data.integer["step"] = {step};
+  data.integer["extremes"] = {INT64_MIN, INT64_MAX, -1};
+  return data;
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
+}
+
+TEST(Checkpoint, ReadsBackEveryBit) {
+  const TemporaryFolder folder;
+  CheckpointData data = sample(3);
+  double odd_nan = 0.0;
+  const std::uint64_t bits = 0x7ff0dead0000beef;
+  std::memcpy(&odd_nan, &bits, sizeof bits);
+  data.real["odd"] = {odd_nan};
+  const auto path = write_checkpoint(folder / "run", data);
+  EXPECT_EQ(path, folder / "run/checkpoint-000001.boba");
+  const CheckpointData read = read_checkpoint(path);
+  EXPECT_EQ(read.text, data.text);
+  EXPECT_EQ(read.integer, data.integer);
+  ASSERT_EQ(read.real.size(), data.real.size());
+  for (const auto& [name, values] : data.real) {
+    EXPECT_TRUE(same_bits(read.real.at(name), values)) << name;
+  }
+}
+
+TEST(Checkpoint, KeepsTheLastTwo) {
+  const TemporaryFolder folder;
+  for (const int step : {1, 2, 3, 4}) {
+    write_checkpoint(folder / "", sample(step));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "checkpoint-000002.boba"));
+  EXPECT_EQ(read_checkpoint(folder / "checkpoint-000003.boba").integer.at("step").at(0), 3);
+  const LatestCheckpoint latest = latest_checkpoint(folder / "");
+  EXPECT_EQ(latest.path, folder / "checkpoint-000004.boba");
+  EXPECT_EQ(latest.data.integer.at("step").at(0), 4);
+  EXPECT_TRUE(latest.refused.empty());
+}
+
+TEST(Checkpoint, RefusesEveryTruncation) {
+  const TemporaryFolder folder;
+  const std::string whole = content_of(write_checkpoint(folder / "", sample(1)));
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const auto path = folder.file("cut.boba", whole.substr(0, length));
+    const std::string message = message_of<InputError>([&] { read_checkpoint(path); });
+    ASSERT_NE(message.find("cut.boba: refused"), std::string::npos) << length << " " << message;
+  }
+  EXPECT_THROW(read_checkpoint(folder.file("long.boba", whole + "x")), InputError);
+  EXPECT_THROW(read_checkpoint(folder / "missing.boba"), InputError);
+}
+
+TEST(Checkpoint, RefusesEveryFlippedBit) {
+  const TemporaryFolder folder;
+  const std::string whole = content_of(write_checkpoint(folder / "", sample(1)));
+  for (std::size_t byte = 0; byte < whole.size(); ++byte) {
+    for (int bit = 0; bit < 8; ++bit) {
+      std::string bytes = whole;
+      bytes[byte] = static_cast<char>(bytes[byte] ^ (1 << bit));
+      const auto path = folder.file("flipped.boba", bytes);
+      ASSERT_THROW(read_checkpoint(path), InputError) << "byte " << byte << " bit " << bit;
+    }
+  }
+  EXPECT_NO_THROW(read_checkpoint(folder.file("same.boba", whole)));
+}
+
+TEST(Checkpoint, OffersTheOlderOneAndKeepsIt) {
+  const TemporaryFolder folder;
+  write_checkpoint(folder / "", sample(1));
+  const auto newest = write_checkpoint(folder / "", sample(2));
+  std::filesystem::resize_file(newest, 100);
+  const LatestCheckpoint latest = latest_checkpoint(folder / "");
+  EXPECT_EQ(latest.data.integer.at("step").at(0), 1);
+  ASSERT_EQ(latest.refused.size(), 1u);
+  EXPECT_NE(latest.refused[0].find("checkpoint-000002.boba: refused as a checkpoint: truncated"), std::string::npos)
+      << latest.refused[0];
+  // A damaged one does not count as one of the two that are kept.
+  write_checkpoint(folder / "", sample(3));
+  EXPECT_TRUE(std::filesystem::exists(folder / "checkpoint-000001.boba"));
+  EXPECT_EQ(latest_checkpoint(folder / "").data.integer.at("step").at(0), 3);
+}
+
+TEST(Checkpoint, NamesEveryRefusedOneWhenNoneIsLeft) {
+  const TemporaryFolder folder;
+  EXPECT_NE(message_of<InputError>([&] { latest_checkpoint(folder / "empty"); }).find("no checkpoint"),
+            std::string::npos);
+  folder.file("checkpoint-000001.boba", "x");
+  folder.file("checkpoint-000002.boba", "");
+  folder.file("checkpoint-old.boba", "a name of another kind");
+  const std::string message = message_of<InputError>([&] { latest_checkpoint(folder / ""); });
+  EXPECT_NE(message.find("checkpoint-000001.boba"), std::string::npos) << message;
+  EXPECT_NE(message.find("checkpoint-000002.boba"), std::string::npos) << message;
+}
+
+/// Lets no file of this process grow beyond `bytes`, as a full disk would.
+class FileSizeLimit {
+public:
+  explicit FileSizeLimit(rlim_t bytes) : previous_handler_(signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &previous_);
+    const rlimit limit = {bytes, previous_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &previous_);
+    signal(SIGXFSZ, previous_handler_);
+  }
+
+private:
+  rlimit previous_ = {};
+  void (*previous_handler_)(int);
+};
+
+TEST(Checkpoint, AFullDiskLeavesTheOlderOne) {
+  const TemporaryFolder folder;
+  const auto older = write_checkpoint(folder / "", sample(1));
+  const std::string before = content_of(older);
+  CheckpointData big = sample(2);
+  big.real["position"].resize(100000, 1.0);
+  for (const rlim_t limit : {rlim_t{0}, rlim_t{100}, rlim_t{500000}}) {
+    const FileSizeLimit full(limit);
+    const std::string message = message_of<std::runtime_error>([&] { write_checkpoint(folder / "", big); });
+    EXPECT_NE(message.find("not written"), std::string::npos) << message;
+    EXPECT_NE(message.find("checkpoint-000001.boba"), std::string::npos) << message;
+  }
+  EXPECT_EQ(content_of(older), before);
+  EXPECT_FALSE(std::filesystem::exists(folder / "checkpoint-000002.boba"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "checkpoint-000002.boba.part"));
+  EXPECT_EQ(read_checkpoint(write_checkpoint(folder / "", big)).real.at("position").size(), 100000u);
+}
+
+TEST(Checkpoint, AFolderThatCannotBeMadeIsAMessage) {
+  EXPECT_NE(message_of<std::runtime_error>([] { write_checkpoint("/dev/null/run", sample(1)); }).find("not written"),
+            std::string::npos);
+}
+
+TEST(Checkpoint, AKillAtAnyMomentLeavesAWholeOne) {
+  for (int round = 0; round < 20; ++round) {
+    const TemporaryFolder folder;
+    write_checkpoint(folder / "", sample(0));
+    const pid_t child = fork();
+    if (child == 0) {
+      for (std::int64_t step = 1;; ++step) {
+        CheckpointData data = sample(step);
+        data.real["position"].resize(200000, static_cast<double>(step));
+        write_checkpoint(folder / "", data);
+      }
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(1500 * round));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    const LatestCheckpoint latest = latest_checkpoint(folder / "");
+    EXPECT_TRUE(latest.refused.empty()); // renamed only when whole
+    const std::int64_t step = latest.data.integer.at("step").at(0);
+    EXPECT_EQ(latest.data.real.at("position").back(), static_cast<double>(step));
+  }
+}
+
+} // namespace
+} // namespace boba
