@@ -3,6 +3,7 @@
 
 #include "continuum/app/report.h"
 #include "continuum/app/summary.h"
+#include "continuum/app/uniaxial_file.h"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -24,6 +25,9 @@ struct Options {
   double elements_across = 48, corner = CylinderMeshSize{}.corner;
   unsigned degree = 2;
   std::vector<double> approaches, strains;
+  std::string kinematics = "linear", law = "neo-hookean", curve;
+  double exponent = 2;
+  int foam_terms = 1;
   std::string ends = "bonded", against = "plates", interface = "rigid", formulation = "automatic", output;
   bool force = false, no_fields = false;
 };
@@ -66,6 +70,14 @@ private:
         ->check(CLI::IsMember({"rigid", "compliant"}));
     app.add_option("--c1", options_.c1, "compliant: p = c1 g + c3 g^3, stress per length");
     app.add_option("--c3", options_.c3, "compliant: stress per length^3");
+    app.add_option("--kinematics", options_.kinematics, "linear (small strain) or finite")
+        ->check(CLI::IsMember({"linear", "finite"}));
+    app.add_option("--law", options_.law, "finite kinematics: neo-hookean or foam")
+        ->check(CLI::IsMember({"neo-hookean", "foam"}));
+    app.add_option("--exponent", options_.exponent, "foam: exponent alpha of its one term");
+    app.add_option("--fit", options_.curve,
+                   "foam: fit to a uniaxial test, CSV of compressive strain, stress, lateral strain");
+    app.add_option("--fit-terms", options_.foam_terms, "foam: terms of the fit, 1 or 2");
     app.add_option("--degree", options_.degree, "degree of the displacement, 1 to 4");
     app.add_option("--formulation", options_.formulation, "automatic, displacement or projected")
         ->check(CLI::IsMember({"automatic", "displacement", "projected"}));
@@ -82,13 +94,36 @@ private:
     return {options_.degree, formulation};
   }
 
-  json parameters() const {
+  std::shared_ptr<const HyperelasticLaw> finite_law() const {
+    const Material material{options_.young, options_.poisson};
+    if (options_.kinematics == "linear") {
+      return nullptr;
+    }
+    check(material);
+    if (options_.law == "neo-hookean") {
+      return std::make_shared<NeoHookean>(material);
+    }
+    if (!options_.curve.empty()) {
+      return std::make_shared<Foam>(fitted_foam(read_uniaxial_test(options_.curve), material, options_.foam_terms));
+    }
+    return std::make_shared<Foam>(std::vector<FoamTerm>{{material.shear(), options_.exponent, material.poisson}});
+  }
+
+  json parameters(const std::shared_ptr<const HyperelasticLaw>& law) const {
     json result = {{"radius", options_.radius},       {"young", options_.young},   {"poisson", options_.poisson},
-                   {"interface", options_.interface}, {"kinematics", "linear"},    {"degree", options_.degree},
+                   {"interface", options_.interface}, {"kinematics", options_.kinematics}, {"degree", options_.degree},
                    {"dimension", 2},                  {"formulation", options_.formulation}};
     if (options_.interface == "compliant") {
       result["c1"] = options_.c1;
       result["c3"] = options_.c3;
+    }
+    if (law) {
+      result["law"] = options_.law;
+      if (const auto* foam = dynamic_cast<const Foam*>(law.get())) {
+        for (const auto& term : foam->terms()) {
+          result["foam_terms"].push_back({{"mu", term.shear}, {"alpha", term.exponent}, {"nu", term.poisson}});
+        }
+      }
     }
     return result;
   }
@@ -99,20 +134,21 @@ private:
     problem.material = {options_.young, options_.poisson};
     problem.approaches = options_.approaches;
     problem.interface = interface();
+    problem.finite_law = finite_law();
     problem.discretisation = discretisation();
     problem.elements_across = options_.elements_across;
     check(problem);
     prepare_folder(options_.output, options_.force);
     const auto loads = solve(problem);
     for (const auto& load : loads) {
-      if (load.contact_radius > largest_linear_contact * problem.radius) {
+      if (!problem.finite_law && load.contact_radius > largest_linear_contact * problem.radius) {
         warnings << fmt::format("boba-continuum: warning: at approach {} the contact radius is {:.3g} R, beyond what "
                                 "small strain can mean (about {} R); use --kinematics finite\n",
                                 load.approach, load.contact_radius / problem.radius, largest_linear_contact);
         break;
       }
     }
-    json chosen = parameters();
+    json chosen = parameters(problem.finite_law);
     chosen["against"] = options_.against;
     chosen["elements_across"] = options_.elements_across;
     write_summary(options_.output, report(loads, problem, chosen));
@@ -135,6 +171,7 @@ private:
     problem.ends = options_.ends == "bonded" ? Ends::bonded : Ends::sliding;
     problem.strains = options_.strains;
     problem.interface = interface();
+    problem.finite_law = finite_law();
     problem.discretisation = discretisation();
     problem.mesh.corner = options_.corner;
     check(problem);
@@ -147,14 +184,14 @@ private:
     prepare_folder(options_.output, options_.force);
     const auto result = solve(problem);
     for (const double strain : problem.strains) {
-      if (std::abs(strain) > largest_linear_strain) {
+      if (!problem.finite_law && std::abs(strain) > largest_linear_strain) {
         warnings << fmt::format("boba-continuum: warning: strain {} is beyond what small strain can mean (about {}); "
                                 "use --kinematics finite\n",
                                 strain, largest_linear_strain);
         break;
       }
     }
-    json chosen = parameters();
+    json chosen = parameters(problem.finite_law);
     chosen["height"] = options_.height;
     chosen["slab"] = options_.slab;
     chosen["ends"] = options_.ends;

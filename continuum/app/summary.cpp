@@ -23,7 +23,7 @@ std::ofstream opened(const std::filesystem::path& file) {
 
 void write_csv(const std::filesystem::path& file, const json& loads) {
   auto stream = opened(file);
-  std::string separator;
+  const char* separator = "";
   for (const auto& [name, value] : loads.at(0).items()) {
     if (value.is_number()) {
       stream << separator << name << " [" << unit_of(name) << "]";
@@ -32,7 +32,7 @@ void write_csv(const std::filesystem::path& file, const json& loads) {
   }
   stream << "\n";
   for (const auto& load : loads) {
-    separator.clear();
+    separator = "";
     for (const auto& entry : load) {
       if (entry.is_number()) {
         stream << separator << fmt::format("{:.12g}", entry.get<double>());
@@ -94,12 +94,11 @@ void write_summary(const std::filesystem::path& folder, const json& document) {
 std::string unit_of(const std::string& field) {
   static const std::map<std::string, std::string> units = {
       {"approach", "length"},         {"contact_radius", "length"},      {"hertz_contact_radius", "length"},
-      {"equatorial_bulge", "length"}, {"tatara_approach", "length"},     {"r", "length"},
+      {"equatorial_bulge", "length"}, {"reference_contact_radius", "length"}, {"tatara_approach", "length"},     {"r", "length"},
       {"z", "length"},                {"u_r", "length"},                 {"u_z", "length"},
       {"overlap", "length"},          {"force", "stress*length^2"},      {"hertz_force", "stress*length^2"},
       {"peak_pressure", "stress"},    {"central_pressure", "stress"},    {"hertz_peak_pressure", "stress"},
-      {"pressure", "stress"},         {"apparent_modulus", "stress"},    {"seconds", "s"},
-      {"lowest_stress_zz", "stress"}, {"highest_stress_mises", "stress"}};
+      {"pressure", "stress"},         {"apparent_modulus", "stress"},    {"seconds", "s"}};
   const auto found = units.find(field);
   return found == units.end() ? "1" : found->second;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "continuum/cylinder/cylinder.h"
-#include "continuum/contact/plate_press.h"
+#include "continuum/contact/finite_press.h"
 
 #include <chrono>
 #include <cmath>
@@ -84,6 +84,42 @@ void solve_layered(const CylinderProblem& problem, CylinderResult& result) {
   }
 }
 
+/// Displacement of the small-strain problem for a unit strain: the guess from which Newton's method starts.
+Eigen::VectorXd unit_displacement(const CylinderProblem& problem, const MeridianBody& body) {
+  DirectSolver solver;
+  solver.factorise(body.stiffness(problem.material));
+  const Eigen::VectorXd lift = body.lifted([&](double, double) { return Eigen::Vector2d(0, -problem.height / 2); });
+  return lift + body.distributed(solver.solve(body.condensed(-body.internal_force(problem.material, lift))));
+}
+
+/// Finite kinematics: each load starts from the last.
+void solve_finite(const CylinderProblem& problem, CylinderResult& result) {
+  const MeridianBody& body = *result.body;
+  const bool layered = !problem.interface.rigid();
+  FinitePress press = layered ? FinitePress(body, *problem.finite_law, plate_side, problem.radius)
+                              : FinitePress(body, *problem.finite_law);
+  const Eigen::VectorXd unit = layered ? Eigen::VectorXd() : unit_displacement(problem, body);
+  Eigen::VectorXd displacement = Eigen::VectorXd::Zero(body.n_unknowns());
+  double reached = 0;
+  for (const double strain : problem.strains) {
+    const auto begin = Clock::now();
+    CylinderLoad load;
+    load.strain = strain;
+    const double half = problem.height / 2;
+    const PressState state = layered ? press.press(half * (1 - reached), half * (1 - strain), problem.interface)
+                                     : press.move(displacement + (strain - reached) * unit);
+    displacement = load.displacement = state.displacement;
+    reached = strain;
+    load.force = layered ? state.force
+                         : -body.axial_force_on(plate_side, body.internal_force(*problem.finite_law, displacement));
+    load.newton_iterations = state.newton_iterations;
+    load.ellipticity = check_ellipticity(body, *problem.finite_law, displacement) / problem.material.shear();
+    describe(load, problem, body);
+    load.seconds = seconds_since(begin);
+    result.loads.push_back(std::move(load));
+  }
+}
+
 } // namespace
 
 void check(const CylinderProblem& problem) {
@@ -116,7 +152,9 @@ CylinderResult solve(const CylinderProblem& problem) {
   result.body = std::make_shared<MeridianBody>(cylinder_mesh(problem.radius, problem.height, problem.mesh),
                                                problem.discretisation, held_ends(problem));
   result.setup_seconds = seconds_since(start);
-  if (problem.interface.rigid()) {
+  if (problem.finite_law) {
+    solve_finite(problem, result);
+  } else if (problem.interface.rigid()) {
     solve_linear(problem, result);
   } else {
     solve_layered(problem, result);

@@ -3,8 +3,7 @@
 
 #include "continuum/contact/interface_law.h"
 #include "continuum/cylinder/cylinder_mesh.h"
-
-#include <optional>
+#include "continuum/elasticity/hyperelastic.h"
 
 namespace boba::continuum {
 
@@ -27,7 +26,7 @@ struct CylinderProblem {
   /// Layer between sliding ends and plates.
   InterfaceLaw interface;
   /// Law of finite kinematics; null: small strain.
-  std::shared_ptr<const GradientLaw> finite_law;
+  std::shared_ptr<const HyperelasticLaw> finite_law;
   Discretisation discretisation;
   CylinderMeshSize mesh;
 };
@@ -43,6 +42,8 @@ struct CylinderLoad {
   /// The same over the axial strain of the side at mid-height.
   double midheight_poisson_local = 0;
   int newton_iterations = 0;
+  /// Finite kinematics: lowest eigenvalue of the acoustic tensor over mu; 1 at rest or less.
+  double ellipticity = 0;
   double seconds = 0;
   /// The side, from mid-height to the end.
   std::vector<FieldPoint> profile;

@@ -65,13 +65,14 @@ Eigen::MatrixXd DirectSolver::condense(const SparseMatrix& columns) const {
       reached.push_back(i);
     }
   }
-  Eigen::MatrixXd packed(Eigen::Index(reached.size()), m);
+  const auto& pivots = factor_.vectorD();
+  Eigen::MatrixXd packed(Eigen::Index(reached.size()), m), divided(Eigen::Index(reached.size()), m);
   for (std::size_t i = 0; i < reached.size(); ++i) {
-    packed.row(Eigen::Index(i)) = y.row(reached[i]) / std::sqrt(std::abs(factor_.vectorD()[reached[i]]));
+    packed.row(Eigen::Index(i)) = y.row(reached[i]);
+    divided.row(Eigen::Index(i)) = y.row(reached[i]) / pivots[reached[i]];
   }
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(m, m);
-  result.selfadjointView<Eigen::Lower>().rankUpdate(packed.transpose());
-  result.triangularView<Eigen::StrictlyUpper>() = result.transpose();
+  Eigen::MatrixXd result(m, m);
+  result.noalias() = packed.transpose() * divided;
   return result;
 }
 

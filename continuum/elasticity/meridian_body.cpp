@@ -203,6 +203,18 @@ std::vector<StressPoint> MeridianBody::stress(const Material& material, const Ei
                      [&](const ElementLaw& law) { return collect_stress(*parts_, law, u, false); });
 }
 
+std::vector<GradientPoint> MeridianBody::gradients(const Eigen::VectorXd& u) const {
+  std::vector<GradientPoint> result;
+  MeridianElement element(*parts_, parts_->discretisation.degree + 1);
+  std::vector<global_dof_index> indices(parts_->element.n_dofs_per_cell());
+  for (const auto& cell : parts_->dofs.active_cell_iterators()) {
+    cell->get_dof_indices(indices);
+    element.reinit(cell);
+    element.append_gradients(element.local(u, indices), result);
+  }
+  return result;
+}
+
 Eigen::VectorXd MeridianBody::condensed(Eigen::VectorXd force) const {
   auto values = to_dealii(force);
   parts_->constraints.condense(values);

@@ -55,6 +55,12 @@ struct StressPoint {
   double weight;
 };
 
+/// Displacement gradient at one integration point.
+struct GradientPoint {
+  double r, z;
+  Gradient gradient;
+};
+
 /// Finite elements for an axisymmetric body with a mirror plane z = 0: u_r = 0 on the axis, u_z = 0 on the mid plane.
 ///
 /// Forces and stiffness are those of the whole circumference (integrals carry 2 pi r), of the half z >= 0.
@@ -105,6 +111,8 @@ public:
   std::vector<StressPoint> stress(const GradientLaw& law, const Eigen::VectorXd& u) const;
   /// The same for linear elasticity (small strain).
   std::vector<StressPoint> stress(const Material& material, const Eigen::VectorXd& u) const;
+  /// Displacement gradient at the integration points.
+  std::vector<GradientPoint> gradients(const Eigen::VectorXd& u) const;
   /// L2 norm of the error of u and of its gradient (hoop strain included), weighted with 2 pi r.
   Eigen::Vector2d error(const Eigen::VectorXd& u, const std::function<Eigen::Vector2d(double, double)>& value,
                         const std::function<Gradient(double, double)>& gradient) const;

@@ -156,6 +156,13 @@ void MeridianElement::append_stress(const GradientLaw& law, double projected_lam
   }
 }
 
+void MeridianElement::append_gradients(const Eigen::VectorXd& u, std::vector<GradientPoint>& result) const {
+  for (const unsigned q : values_.quadrature_point_indices()) {
+    const auto x = values_.quadrature_point(q);
+    result.push_back({x[0], x[1], gradient_[q] * u});
+  }
+}
+
 Eigen::Vector2d MeridianElement::squared_error(const Eigen::VectorXd& u,
                                                const std::function<Eigen::Vector2d(double, double)>& value,
                                                const std::function<Gradient(double, double)>& gradient) const {

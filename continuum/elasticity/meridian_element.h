@@ -24,6 +24,7 @@ public:
   /// Appends the Cauchy stress of the cell's integration points.
   void append_stress(const GradientLaw& law, double projected_lame, const Eigen::VectorXd& u, bool finite,
                      std::vector<StressPoint>& result) const;
+  void append_gradients(const Eigen::VectorXd& u, std::vector<GradientPoint>& result) const;
   Eigen::Vector2d squared_error(const Eigen::VectorXd& u, const std::function<Eigen::Vector2d(double, double)>& value,
                                 const std::function<Gradient(double, double)>& gradient) const;
 

@@ -25,7 +25,21 @@ struct Range {
 struct Stage {
   Range edges;
   std::shared_ptr<MeridianBody> body;
-  std::unique_ptr<PlatePress> press;
+  std::unique_ptr<PlatePress> linear;
+  std::unique_ptr<FinitePress> finite;
+  /// Height of the plate of the last load.
+  double plate;
+
+  const ContactSurface& surface() const { return finite ? finite->surface() : linear->surface(); }
+  PressState press(double height, const InterfaceLaw& interface) {
+    if (!finite) {
+      return linear->press(height, interface);
+    }
+    const double from = plate;
+    PressState state = finite->press(from, height, interface);
+    plate = height;
+    return state;
+  }
 };
 
 class Run {
@@ -71,8 +85,13 @@ private:
     Stage stage;
     stage.edges = edges;
     stage.body = std::make_shared<MeridianBody>(sphere_mesh(problem_.radius, size), problem_.discretisation);
-    stage.press = std::make_unique<PlatePress>(*stage.body, problem_.material, plate_side,
-                                               std::min(1.3 * edges.highest, 0.97 * problem_.radius));
+    stage.plate = problem_.radius;
+    const double limit = std::min(1.3 * edges.highest, 0.97 * problem_.radius);
+    if (problem_.finite_law) {
+      stage.finite = std::make_unique<FinitePress>(*stage.body, *problem_.finite_law, plate_side, limit);
+    } else {
+      stage.linear = std::make_unique<PlatePress>(*stage.body, problem_.material, plate_side, limit);
+    }
     stage_ = std::move(stage);
   }
 
@@ -84,9 +103,10 @@ private:
     }
     SphereLoad result = solved(approach);
     // A surprise (auxetic or deep contact): mesh again around the edge that was found.
-    for (int repeat = 0; repeat < 4 && !stage_->edges.holds(result.contact_radius); ++repeat) {
+    for (int repeat = 0; repeat < 4 && !stage_->edges.holds(result.reference_contact_radius); ++repeat) {
       remember(result);
-      prepare({0.93 * result.contact_radius, std::min(1.07 * result.contact_radius, 0.9 * problem_.radius)});
+      const double edge = result.reference_contact_radius;
+      prepare({0.93 * std::min(edge, 0.9 * problem_.radius), std::min(1.07 * edge, 0.9 * problem_.radius)});
       result = solved(approach);
     }
     remember(result);
@@ -94,18 +114,19 @@ private:
     return result;
   }
 
-  void remember(const SphereLoad& load) { ratio_ = load.contact_radius / load.hertz.contact_radius; }
+  void remember(const SphereLoad& load) { ratio_ = load.reference_contact_radius / load.hertz.contact_radius; }
 
   SphereLoad solved(double approach) {
     SphereLoad load;
-    const PressState state = stage_->press->press(problem_.radius - approach / 2, problem_.interface);
-    const ContactSurface& surface = stage_->press->surface();
+    const PressState state = stage_->press(problem_.radius - approach / 2, problem_.interface);
+    const ContactSurface& surface = stage_->surface();
     load.approach = approach;
     load.hertz = hertz(problem_.radius, problem_.material, approach / 2);
     load.force = state.force;
-    load.contact_radius = contact_edge(surface.r(), state, problem_.interface);
-    load.central_pressure = central_pressure(surface.r(), state, load.contact_radius);
-    load.peak_pressure = std::max(load.central_pressure, off_axis_peak(surface.r(), state, load.contact_radius));
+    const double edge = contact_edge(surface.r(), state, problem_.interface);
+    load.reference_contact_radius = edge;
+    load.central_pressure = central_pressure(surface.r(), state, edge);
+    load.peak_pressure = std::max(load.central_pressure, off_axis_peak(surface.r(), state, edge));
     load.active_set_iterations = state.active_set_iterations;
     load.newton_iterations = state.newton_iterations;
     load.n_unknowns = stage_->body->n_unknowns();
@@ -117,7 +138,25 @@ private:
     load.displacement = state.displacement;
     load.profile = stage_->body->boundary_points(plate_side, state.displacement);
     load.equatorial_bulge = load.profile.front().u_r;
+    load.contact_radius = edge;
+    if (problem_.finite_law) {
+      load.contact_radius += radial_displacement_at(load.profile, edge);
+      load.ellipticity = check_ellipticity(*stage_->body, *problem_.finite_law, state.displacement) /
+                         problem_.material.shear();
+    }
     return load;
+  }
+
+  /// u_r of the upper surface at radius r, linear between vertices (which run from equator to pole).
+  static double radial_displacement_at(const std::vector<FieldPoint>& profile, double r) {
+    for (std::size_t i = profile.size() - 1; i > 0; --i) {
+      const FieldPoint& inner = profile[i];
+      const FieldPoint& outer = profile[i - 1];
+      if (outer.r >= r) {
+        return inner.u_r + (outer.u_r - inner.u_r) * (r - inner.r) / (outer.r - inner.r);
+      }
+    }
+    return profile.front().u_r;
   }
 
   /// Largest nodal pressure away from the axis, where the smoothed central value does not speak.

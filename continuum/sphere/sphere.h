@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "continuum/contact/plate_press.h"
+#include "continuum/contact/finite_press.h"
 #include "continuum/sphere/hertz.h"
 #include "continuum/sphere/sphere_mesh.h"
 
@@ -15,7 +15,7 @@ struct SphereProblem {
   std::vector<double> approaches;
   InterfaceLaw interface;
   /// Law of finite kinematics; null: small strain.
-  std::shared_ptr<const GradientLaw> finite_law;
+  std::shared_ptr<const HyperelasticLaw> finite_law;
   Discretisation discretisation;
   /// Elements across the contact radius at its edge; at least 8.
   double elements_across = 48;
@@ -24,7 +24,9 @@ struct SphereProblem {
 struct SphereLoad {
   double approach = 0;
   double force = 0;
+  /// Radius of the contact: where it lies now with finite kinematics, on the unpressed body with linear ones.
   double contact_radius = 0;
+  double reference_contact_radius = 0;
   /// Largest pressure per reference area, and the one on the axis.
   double peak_pressure = 0;
   double central_pressure = 0;
@@ -34,6 +36,8 @@ struct SphereLoad {
   Hertz hertz{};
   int active_set_iterations = 0;
   int newton_iterations = 0;
+  /// Finite kinematics: lowest eigenvalue of the acoustic tensor over mu.
+  double ellipticity = 0;
   int n_unknowns = 0;
   int n_contact_unknowns = 0;
   double seconds = 0;

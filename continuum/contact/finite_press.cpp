@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "continuum/contact/finite_press.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+namespace boba::continuum {
+namespace {
+
+constexpr int max_newton = 25;
+constexpr double shortest_step = 1. / 64;
+constexpr double tolerance = 1e-9;
+
+PressState between(const PressState& from, const PressState& to, double share) {
+  PressState state = to;
+  state.displacement = from.displacement + share * (to.displacement - from.displacement);
+  state.pressure = from.pressure + share * (to.pressure - from.pressure);
+  return state;
+}
+
+} // namespace
+
+FinitePress::FinitePress(const MeridianBody& body, const HyperelasticLaw& law, Boundary boundary, double r_limit)
+    : body_(body), law_(law), surface_(std::make_unique<ContactSurface>(body, boundary, r_limit)) {
+  state_.displacement = Eigen::VectorXd::Zero(body.n_unknowns());
+  state_.pressure = Eigen::VectorXd::Zero(surface_->area().size());
+  state_.active.assign(std::size_t(surface_->area().size()), false);
+}
+
+FinitePress::FinitePress(const MeridianBody& body, const HyperelasticLaw& law) : body_(body), law_(law) {
+  state_.displacement = Eigen::VectorXd::Zero(body.n_unknowns());
+}
+
+double FinitePress::residual(const PressState& state, double* scale) const {
+  Eigen::VectorXd force = body_.internal_force(law_, state.displacement);
+  // The nodal forces before they cancel set the scale.
+  *scale = force.norm();
+  if (surface_) {
+    force += surface_->loads() * state.pressure;
+  }
+  return body_.condensed(force).norm();
+}
+
+bool FinitePress::newton(double plate, const InterfaceLaw& interface, PressState& state) {
+  double merit = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < max_newton; ++step) {
+    PressState next = state;
+    const Eigen::VectorXd rest = body_.condensed(-body_.internal_force(law_, state.displacement));
+    solver_.factorise(body_.stiffness(law_, state.displacement));
+    Eigen::VectorXd pull = rest;
+    if (surface_) {
+      const Eigen::VectorXd free = state.displacement + body_.distributed(solver_.solve(rest));
+      const Eigen::MatrixXd compliance = solver_.condense(surface_->loads());
+      const Eigen::VectorXd overlap = surface_->overlap(plate, free);
+      const ContactSolution contact = solve({compliance, surface_->area(), overlap}, interface, state.active);
+      next.pressure = contact.pressure;
+      next.active = contact.active;
+      next.active_set_iterations += contact.iterations;
+      pull -= body_.condensed(surface_->loads() * contact.pressure);
+    }
+    next.displacement = state.displacement + body_.distributed(solver_.solve(pull));
+    double share = 1;
+    for (;; share /= 2) {
+      if (share < shortest_step) {
+        return false;
+      }
+      const PressState trial = between(state, next, share);
+      try {
+        double scale = 0;
+        last_residual_ = residual(trial, &scale);
+        last_goal_ = tolerance * scale;
+      } catch (const Inverted&) {
+        continue;
+      }
+      if (std::isfinite(last_residual_) && (last_residual_ <= last_goal_ || last_residual_ < merit * (1 - 0.1 * share))) {
+        state = trial;
+        break;
+      }
+    }
+    merit = last_residual_;
+    ++state.newton_iterations;
+    if (share == 1 && last_residual_ <= last_goal_) {
+      return true;
+    }
+  }
+  return false;
+}
+
+PressState FinitePress::press(double from, double plate, const InterfaceLaw& interface) {
+  state_.newton_iterations = state_.active_set_iterations = 0;
+  double at = from, step = plate - from;
+  while (std::abs(plate - at) > 1e-14 * std::abs(plate)) {
+    PressState trial = state_;
+    bool settled = false;
+    const double goal = std::abs(step) >= std::abs(plate - at) ? plate : at + step;
+    try {
+      settled = newton(goal, interface, trial);
+    } catch (const Inverted&) {
+    } catch (const NotSettled&) {
+    }
+    if (settled) {
+      state_ = trial;
+      at = goal;
+      continue;
+    }
+    step /= 2;
+    if (std::abs(step) < shortest_step * std::abs(plate - from)) {
+      throw NotSettled(fmt::format("Newton's method did not settle at plate height {:.6g} in load steps down to 1/64 of "
+                                   "the load: residual {:.3e} (goal {:.3e})",
+                                   goal, last_residual_, last_goal_));
+    }
+  }
+  PressState result = state_;
+  result.overlap = surface_->overlap(plate, result.displacement).cwiseQuotient(surface_->area());
+  result.force = surface_->area().dot(result.pressure);
+  return result;
+}
+
+PressState FinitePress::move(const Eigen::VectorXd& guess) {
+  state_.newton_iterations = 0;
+  const Eigen::VectorXd whole = guess - state_.displacement;
+  double at = 0, step = 1;
+  while (at < 1) {
+    PressState trial = state_;
+    const double goal = std::min(1., at + step);
+    trial.displacement += (goal - at) * whole;
+    bool settled = false;
+    try {
+      settled = newton(0, {}, trial);
+    } catch (const Inverted&) {
+    }
+    if (settled) {
+      state_ = trial;
+      at = goal;
+      continue;
+    }
+    step /= 2;
+    if (step < shortest_step) {
+      throw NotSettled(fmt::format("Newton's method did not settle in load steps down to 1/64 of the load: residual "
+                                   "{:.3e} (goal {:.3e})",
+                                   last_residual_, last_goal_));
+    }
+  }
+  return state_;
+}
+
+double check_ellipticity(const MeridianBody& body, const HyperelasticLaw& law, const Eigen::VectorXd& u) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& point : body.gradients(u)) {
+    const double value = law.lowest_acoustic(point.gradient);
+    if (!(value > 0)) {
+      throw NotSettled(fmt::format("the law has lost ellipticity at r = {:.4g}, z = {:.4g}: lowest eigenvalue of the "
+                                   "acoustic tensor {:.3e} (it must be > 0)",
+                                   point.r, point.z, value));
+    }
+    lowest = std::min(lowest, value);
+  }
+  return lowest;
+}
+
+} // namespace boba::continuum

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "continuum/contact/plate_press.h"
+#include "continuum/elasticity/hyperelastic.h"
+
+namespace boba::continuum {
+
+/// A hyperelastic body, total Lagrangian: Newton's method with line search; load steps are halved when it fails.
+///
+/// The plate's constraint z + u_z <= plate stays linear in u, so each Newton step is the linear contact problem of the
+/// tangent, condensed on the contact unknowns (a sequential quadratic programme).
+class FinitePress {
+public:
+  /// Presses the boundary's vertices out to r_limit.
+  FinitePress(const MeridianBody& body, const HyperelasticLaw& law, Boundary boundary, double r_limit);
+  /// No contact: the held boundary moves.
+  FinitePress(const MeridianBody& body, const HyperelasticLaw& law);
+
+  const ContactSurface& surface() const { return *surface_; }
+  /// Equilibrium with the plate at height `plate`, from `from` (the plate that just touches, or the last load).
+  /// Throws NotSettled with the last residuals.
+  PressState press(double from, double plate, const InterfaceLaw& interface);
+  /// Equilibrium after the held boundary has moved; guess: a displacement of the whole body that moves it.
+  PressState move(const Eigen::VectorXd& guess);
+
+private:
+  bool newton(double plate, const InterfaceLaw& interface, PressState& state);
+  double residual(const PressState& state, double* scale) const;
+
+  const MeridianBody& body_;
+  const HyperelasticLaw& law_;
+  std::unique_ptr<ContactSurface> surface_;
+  DirectSolver solver_;
+  PressState state_;
+  double last_residual_ = 0;
+  double last_goal_ = 0;
+};
+
+/// Throws NotSettled when the law has lost ellipticity somewhere in the body, with the place; otherwise returns the
+/// lowest eigenvalue of the acoustic tensor.
+double check_ellipticity(const MeridianBody& body, const HyperelasticLaw& law, const Eigen::VectorXd& u);
+
+} // namespace boba::continuum
