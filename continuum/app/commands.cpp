@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <iostream>
+#include <optional>
 
 namespace boba::continuum {
 namespace {
@@ -22,7 +23,8 @@ constexpr double largest_linear_strain = 0.1;
 struct Options {
   double radius = 1, height = 2, young = 1, poisson = 0.25, slab = 0;
   double c1 = 0, c3 = 0;
-  double elements_across = 48, corner = CylinderMeshSize{}.corner;
+  double elements_across = 48;
+  std::optional<double> corner;
   unsigned degree = 2;
   std::vector<double> approaches, strains;
   std::string kinematics = "linear", law = "neo-hookean", curve;
@@ -51,7 +53,7 @@ public:
     cylinder_->add_option("--strain", options_.strains, "nominal compressive strains, comma separated")
         ->delimiter(',')
         ->required();
-    cylinder_->add_option("--corner", options_.corner, "element size at the held corner, in units of min(R, h/2)");
+    cylinder_->add_option("--corner", options_.corner, "element size at the held corner, in units of min(R, h/2); 0.001, finite 0.02");
   }
 
   int run(std::ostream& warnings) override {
@@ -94,13 +96,18 @@ private:
     return {options_.degree, formulation};
   }
 
-  std::shared_ptr<const HyperelasticLaw> finite_law() const {
+  /// The law of finite kinematics, or null.
+  std::shared_ptr<const HyperelasticLaw> finite_law(std::ostream& warnings) const {
     const Material material{options_.young, options_.poisson};
     if (options_.kinematics == "linear") {
       return nullptr;
     }
     check(material);
     if (options_.law == "neo-hookean") {
+      if (material.poisson < 0) {
+        warnings << "boba-continuum: warning: with poisson < 0 the neo-Hookean energy falls without bound as the volume "
+                    "goes to 0, and points beside edges collapse early; --law foam does not\n";
+      }
       return std::make_shared<NeoHookean>(material);
     }
     if (!options_.curve.empty()) {
@@ -134,7 +141,7 @@ private:
     problem.material = {options_.young, options_.poisson};
     problem.approaches = options_.approaches;
     problem.interface = interface();
-    problem.finite_law = finite_law();
+    problem.finite_law = finite_law(warnings);
     problem.discretisation = discretisation();
     problem.elements_across = options_.elements_across;
     check(problem);
@@ -171,15 +178,16 @@ private:
     problem.ends = options_.ends == "bonded" ? Ends::bonded : Ends::sliding;
     problem.strains = options_.strains;
     problem.interface = interface();
-    problem.finite_law = finite_law();
+    problem.finite_law = finite_law(warnings);
     problem.discretisation = discretisation();
-    problem.mesh.corner = options_.corner;
+    // A finely resolved corner folds over under finite strain: there the field is singular.
+    problem.mesh.corner = options_.corner.value_or(problem.finite_law ? 0.02 : CylinderMeshSize{}.corner);
     check(problem);
     if (!(options_.slab >= 0)) {
       throw std::invalid_argument(fmt::format("slab = {} is not allowed: it must be >= 0", options_.slab));
     }
-    if (!(options_.corner > 0 && options_.corner <= 1)) {
-      throw std::invalid_argument(fmt::format("corner = {} is not allowed: it must lie in (0, 1]", options_.corner));
+    if (!(problem.mesh.corner > 0 && problem.mesh.corner <= 1)) {
+      throw std::invalid_argument(fmt::format("corner = {} is not allowed: it must lie in (0, 1]", problem.mesh.corner));
     }
     prepare_folder(options_.output, options_.force);
     const auto result = solve(problem);

@@ -106,9 +106,7 @@ PressState FinitePress::press(double from, double plate, const InterfaceLaw& int
     }
     step /= 2;
     if (std::abs(step) < shortest_step * std::abs(plate - from)) {
-      throw NotSettled(fmt::format("Newton's method did not settle at plate height {:.6g} in load steps down to 1/64 of "
-                                   "the load: residual {:.3e} (goal {:.3e})",
-                                   goal, last_residual_, last_goal_));
+      give_up(fmt::format(" at plate height {:.6g}", goal));
     }
   }
   PressState result = state_;
@@ -137,26 +135,39 @@ PressState FinitePress::move(const Eigen::VectorXd& guess) {
     }
     step /= 2;
     if (step < shortest_step) {
-      throw NotSettled(fmt::format("Newton's method did not settle in load steps down to 1/64 of the load: residual "
-                                   "{:.3e} (goal {:.3e})",
-                                   last_residual_, last_goal_));
+      give_up("");
     }
   }
   return state_;
 }
 
-double check_ellipticity(const MeridianBody& body, const HyperelasticLaw& law, const Eigen::VectorXd& u) {
-  double lowest = std::numeric_limits<double>::infinity();
+void FinitePress::give_up(const std::string& where) const {
+  const Ellipticity last = ellipticity(body_, law_, state_.displacement);
+  throw NotSettled(fmt::format("Newton's method did not settle{} in load steps down to 1/64 of the load: residual {:.3e} "
+                               "(goal {:.3e}). Of the last settled state the lowest eigenvalue of the acoustic tensor is "
+                               "{:.3e} at r = {:.4g}, z = {:.4g}; near 0 the law itself is unstable",
+                               where, last_residual_, last_goal_, last.lowest, last.r, last.z));
+}
+
+Ellipticity ellipticity(const MeridianBody& body, const HyperelasticLaw& law, const Eigen::VectorXd& u) {
+  Ellipticity result{std::numeric_limits<double>::infinity(), 0, 0};
   for (const auto& point : body.gradients(u)) {
     const double value = law.lowest_acoustic(point.gradient);
-    if (!(value > 0)) {
-      throw NotSettled(fmt::format("the law has lost ellipticity at r = {:.4g}, z = {:.4g}: lowest eigenvalue of the "
-                                   "acoustic tensor {:.3e} (it must be > 0)",
-                                   point.r, point.z, value));
+    if (!(value >= result.lowest)) {
+      result = {value, point.r, point.z};
     }
-    lowest = std::min(lowest, value);
   }
-  return lowest;
+  return result;
+}
+
+double check_ellipticity(const MeridianBody& body, const HyperelasticLaw& law, const Eigen::VectorXd& u) {
+  const Ellipticity found = ellipticity(body, law, u);
+  if (!(found.lowest > 0)) {
+    throw NotSettled(fmt::format("the law has lost ellipticity at r = {:.4g}, z = {:.4g}: lowest eigenvalue of the "
+                                 "acoustic tensor {:.3e} (it must be > 0)",
+                                 found.r, found.z, found.lowest));
+  }
+  return found.lowest;
 }
 
 } // namespace boba::continuum

@@ -27,6 +27,7 @@ public:
 private:
   bool newton(double plate, const InterfaceLaw& interface, PressState& state);
   double residual(const PressState& state, double* scale) const;
+  [[noreturn]] void give_up(const std::string& where) const;
 
   const MeridianBody& body_;
   const HyperelasticLaw& law_;
@@ -36,6 +37,12 @@ private:
   double last_residual_ = 0;
   double last_goal_ = 0;
 };
+
+/// Lowest eigenvalue of the law's acoustic tensor over the integration points of the body, and where it is.
+struct Ellipticity {
+  double lowest, r, z;
+};
+Ellipticity ellipticity(const MeridianBody& body, const HyperelasticLaw& law, const Eigen::VectorXd& u);
 
 /// Throws NotSettled when the law has lost ellipticity somewhere in the body, with the place; otherwise returns the
 /// lowest eigenvalue of the acoustic tensor.

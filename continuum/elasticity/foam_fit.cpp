@@ -3,8 +3,10 @@
 
 #include <Eigen/Dense>
 #include <fmt/format.h>
+#include <limits>
 #include <unsupported/Eigen/NonLinearOptimization>
 #include <unsupported/Eigen/NumericalDiff>
+#include <utility>
 
 namespace boba::continuum {
 namespace {
@@ -48,6 +50,23 @@ struct Misfit {
   }
 };
 
+/// The end of a search that starts with the given exponents and the moduli of small strain.
+Eigen::VectorXd searched(const std::vector<UniaxialState>& states, const Material& material, int n_terms,
+                         std::pair<double, double> exponents) {
+  Eigen::VectorXd x(3 * n_terms);
+  const double t = std::atanh((material.poisson + 0.25) / 0.75);
+  for (int k = 0; k < n_terms; ++k) {
+    x.segment<3>(3 * k) << material.shear() / material.young / n_terms, k == 0 ? exponents.first : exponents.second, t;
+  }
+  const Misfit misfit{states, material.young, int(x.size())};
+  Eigen::NumericalDiff<Misfit, Eigen::Central> differentiated(misfit);
+  Eigen::LevenbergMarquardt<Eigen::NumericalDiff<Misfit, Eigen::Central>> search(differentiated);
+  search.parameters.maxfev = 4000;
+  search.parameters.ftol = search.parameters.xtol = 1e-14;
+  search.minimize(x);
+  return x;
+}
+
 } // namespace
 
 std::vector<FoamTerm> fitted_foam(const std::vector<UniaxialState>& states, const Material& material, int n_terms) {
@@ -57,18 +76,20 @@ std::vector<FoamTerm> fitted_foam(const std::vector<UniaxialState>& states, cons
                                             "numbers (2 a state) for each term",
                                             n_terms, states.size()));
   }
-  Eigen::VectorXd x(3 * n_terms);
-  const double t = std::atanh((material.poisson + 0.25) / 0.75);
-  for (int k = 0; k < n_terms; ++k) {
-    // The exponents start apart: two equal terms could never part.
-    x.segment<3>(3 * k) << material.shear() / material.young / n_terms, k == 0 ? 2. : -4., t;
+  // Several starts: the misfit has more than one valley in the exponents.
+  constexpr std::pair<double, double> starts[] = {{2, -4}, {2, -8}, {4, -2}, {8, 2}, {8, -8}, {-4, -12}};
+  Eigen::VectorXd best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& exponents : starts) {
+    const Eigen::VectorXd x = searched(states, material, n_terms, exponents);
+    Eigen::VectorXd residual(2 * Eigen::Index(states.size()));
+    Misfit{states, material.young, int(x.size())}(x, residual);
+    if (residual.norm() < least) {
+      least = residual.norm();
+      best = x;
+    }
   }
-  const Misfit misfit{states, material.young, int(x.size())};
-  Eigen::NumericalDiff<Misfit, Eigen::Central> differentiated(misfit);
-  Eigen::LevenbergMarquardt<Eigen::NumericalDiff<Misfit, Eigen::Central>> search(differentiated);
-  search.parameters.maxfev = 4000;
-  search.minimize(x);
-  return terms_of(x, material.young);
+  return terms_of(best, material.young);
 }
 
 } // namespace boba::continuum
