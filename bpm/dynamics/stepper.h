@@ -35,6 +35,8 @@ public:
   bool started() const { return started_; }
   /// Forces and sums at the present state, which must not have started; nothing moves.
   void evaluate_only();
+  /// The volume pass of every block alone, for the benchmark.
+  void volumes_only() { forces_.volumes_only(state_); }
   /// Drift, forces, kick. The cell stands still; see move_cell.
   void advance(Virial virial);
   /// Moves the cell at the end of a step, flips it when it leans too far, and advances time and strain.

@@ -165,6 +165,16 @@ void ForceField::evaluate(LaneState& state, const Box& box, const Evaluation& wh
   bond_seconds += omp_get_wtime() - kicked;
 }
 
+void ForceField::volumes_only(const LaneState& state) const {
+  AlignedVector volume;
+  for (const Block& block : layout_.blocks()) {
+    if (block.many_body) {
+      volume.assign(static_cast<std::size_t>(block.n_nodes) * block.n_lanes, 0.0);
+      table_.volumes(networks_[block.template_index].view(), state.x.data() + block.offset, volume.data(), block.n_lanes);
+    }
+  }
+}
+
 void ForceField::reduce_contacts() {
   contact_totals_ = {};
   double smallest_r2 = no_contact_r2;

@@ -54,6 +54,8 @@ public:
 
   const std::vector<GrainSums>& grain_sums() const { return sums_; }
   const ContactTotals& contact_totals() const { return contact_totals_; }
+  /// The node volumes of every block with alpha != 0, computed and dropped: the benchmark's share of the bond pass.
+  void volumes_only(const LaneState& state) const;
   /// Pairwise elastic energy of all bonds, k d^2; a pass of its own, for rare use.
   double bond_energy(const LaneState& state, const Box& box) const;
   /// The bond with the largest r / r0, over all grains; a pass of its own, for rare use.

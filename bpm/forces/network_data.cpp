@@ -28,6 +28,14 @@ NetworkData::NetworkData(const GrainTemplate& grain) : n_nodes_(grain.n_nodes())
   for (int i = 0; i < n_nodes_; ++i) {
     first_bond_[i + 1] += first_bond_[i];
   }
+  std::int64_t reach = 0;
+  for (int i = 0; i < n_nodes_; ++i) {
+    reach = std::max<std::int64_t>(reach, i + 1);
+    for (std::int64_t b = first_bond_[i]; b < first_bond_[i + 1]; ++b) {
+      reach = std::max(reach, records_[b].other + 1);
+    }
+    reach_.push_back(reach);
+  }
   first_partner_.push_back(0);
   for (std::vector<std::int32_t>& list : partners) {
     std::sort(list.begin(), list.end());

@@ -21,7 +21,7 @@ class NetworkData {
 public:
   explicit NetworkData(const GrainTemplate& grain);
 
-  kernels::Network view() const { return {n_nodes_, first_bond_.data(), records_.data()}; }
+  kernels::Network view() const { return {n_nodes_, first_bond_.data(), records_.data(), reach_.data()}; }
   int n_nodes() const { return n_nodes_; }
   std::int64_t n_bonds() const { return static_cast<std::int64_t>(records_.size() + image_bonds_.size()); }
   const std::vector<ImageBond>& image_bonds() const { return image_bonds_; }
@@ -33,6 +33,7 @@ private:
   int n_nodes_ = 0;
   std::vector<std::int64_t> first_bond_;
   std::vector<kernels::BondRecord> records_;
+  std::vector<std::int64_t> reach_;
   std::vector<ImageBond> image_bonds_;
   std::vector<std::int64_t> first_partner_;
   std::vector<std::int32_t> partners_;

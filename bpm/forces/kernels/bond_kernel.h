@@ -36,9 +36,11 @@ template <class V> inline V dot(const Triple<V>& a, const Triple<V>& b) {
   return multiply_add(a.c[2], b.c[2], multiply_add(a.c[1], b.c[1], a.c[0] * b.c[0]));
 }
 
-/// Adds r^3 of every bond to the volumes of its two nodes.
-template <class V> void node_volumes(const Network& network, const double* x, double* volume, int stride) {
-  for (std::int64_t i = 0; i < network.n_nodes; ++i) {
+/// Adds r^3 of the bonds of the nodes [begin, end) to the volumes of both of their nodes.
+template <class V>
+void node_volumes(const Network& network, const double* x, double* volume, int stride, std::int64_t begin,
+                  std::int64_t end) {
+  for (std::int64_t i = begin; i < end; ++i) {
     const Triple<V> xi = load3<V>(x, i, stride);
     V sum = load<V>(volume + i * stride);
     for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
@@ -50,6 +52,16 @@ template <class V> void node_volumes(const Network& network, const double* x, do
       store<V>(volume + j * stride, load<V>(volume + j * stride) + cube);
     }
     store<V>(volume + i * stride, sum);
+  }
+}
+
+void volumes_of_nodes(const Network& network, const double* x, double* volume, int n_lanes) {
+  if (n_lanes == 1) {
+    node_volumes<double>(network, x, volume, 1, 0, network.n_nodes);
+    return;
+  }
+  for (int lane = 0; lane < n_lanes; lane += native_lanes) {
+    node_volumes<Wide>(network, x + lane, volume + lane, n_lanes, 0, network.n_nodes);
   }
 }
 
@@ -92,10 +104,18 @@ void bond_lanes(const Network& network, const BlockArrays& a, const BondParamete
   double* volume = a.volume + lane;
   const V alpha = load<V>(a.alpha + lane);
   Tensor<V> stress{}, kinetic{};
-  if constexpr (many_body) {
-    node_volumes<V>(network, x, volume, stride);
-  }
+  std::int64_t volumes_done = 0;
   for (std::int64_t i = 0; i < network.n_nodes; ++i) {
+    if constexpr (many_body) {
+      // Volumes run ahead of forces just as far as the bonds of the nodes up to here reach: what one pass reads is
+      // still in the cache for the other.
+      if (network.reach[i] > volumes_done) {
+        const std::int64_t ahead = boba::kernels::volume_chunk;
+        const std::int64_t end = network.reach[i] + ahead < network.n_nodes ? network.reach[i] + ahead : network.n_nodes;
+        node_volumes<V>(network, x, volume, stride, volumes_done, end);
+        volumes_done = end;
+      }
+    }
     const Triple<V> xi = load3<V>(x, i, stride);
     const Triple<V> vi = load3<V>(v, i, stride);
     Triple<V> fi = load3<V>(f, i, stride);

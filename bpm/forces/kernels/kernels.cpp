@@ -12,7 +12,8 @@
 
 namespace boba::kernels {
 
-extern const KernelTable BOBA_KERNEL_TABLE = {BOBA_STRINGIFY(BOBA_KERNEL_ISA), native_lanes, &bond_forces, &drift_block,
+extern const KernelTable BOBA_KERNEL_TABLE = {BOBA_STRINGIFY(BOBA_KERNEL_ISA), native_lanes, &volumes_of_nodes,
+                                              &bond_forces, &drift_block,
                                               &contact_forces, &near_places};
 
 } // namespace boba::kernels

@@ -19,7 +19,11 @@ struct Network {
   int n_nodes;
   const std::int64_t* first_bond; ///< n_nodes + 1
   const BondRecord* bonds;
+  const std::int64_t* reach; ///< per node i: 1 + the last node that a bond of any node up to i joins
 };
+
+/// Nodes whose volumes are computed at a go, beyond what the forces need next.
+inline constexpr std::int64_t volume_chunk = 64;
 
 /// Forces are added to what `f` holds (contacts come first). Arrays start at the block; `volume` is scratch
 /// [node][lane] that holds the volumes of bonds evaluated elsewhere (images), usually zero.
@@ -94,6 +98,8 @@ struct SortedNodes {
 struct KernelTable {
   const char* name; ///< "avx512", "avx2" or "baseline"
   int lanes;
+  /// volume[node][lane] += r^3 of every bond, at both of its nodes.
+  void (*volumes)(const Network&, const double* x, double* volume, int n_lanes);
   void (*bonds)(const Network&, const BlockArrays&, const BondParameters&, bool many_body, Virial, LaneSums&);
   DriftResult (*drift)(double* x, const double* v, int n_nodes, int n_lanes, const Drift&);
   /// Adds the contact forces of one grain to `f` (which starts at the grain's lane). `x`, `v` are whole arrays,
