@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/convex_hull.h"
 
+#include <CGAL/Convex_hull_traits_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Surface_mesh.h>
 #include <CGAL/convex_hull_3.h>
 #include <algorithm>
 #include <fmt/format.h>
@@ -15,6 +15,7 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
+using Traits = CGAL::Convex_hull_traits_3<Kernel>;
 
 Point to_point(const Vector3& x) {
   return Point(x[0], x[1], x[2]);
@@ -74,55 +75,66 @@ std::vector<int> find_nodes(std::span<const Vector3> nodes, const std::vector<in
   return found;
 }
 
-/// Neighbours across edges from the sorted list of half edges.
-std::vector<std::array<int, 3>> adjacency(const std::vector<std::array<int, 3>>& triangles) {
+/// Neighbours across edges: half edges are listed by their lower vertex, where few candidates wait for each.
+std::vector<std::array<int, 3>> adjacency(const std::vector<std::array<int, 3>>& triangles, std::size_t n_vertices) {
   struct HalfEdge {
-    int low, high, triangle, edge;
+    int high, triangle, edge;
   };
-  std::vector<HalfEdge> edges;
-  edges.reserve(3 * triangles.size());
-  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
-    for (int e = 0; e < 3; ++e) {
-      const auto [low, high] = std::minmax(triangles[t][e], triangles[t][(e + 1) % 3]);
-      edges.push_back({low, high, t, e});
+  std::vector<int> first(n_vertices + 1, 0);
+  const int n = static_cast<int>(triangles.size());
+  for (int i = 0; i < 3 * n; ++i) {
+    ++first[std::min(triangles[i / 3][i % 3], triangles[i / 3][(i % 3 + 1) % 3]) + 1];
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<HalfEdge> waiting(3 * triangles.size());
+  std::vector<int> n_waiting(n_vertices, 0);
+  std::vector<std::array<int, 3>> neighbour(triangles.size());
+  for (int i = 0; i < 3 * n; ++i) {
+    const int t = i / 3, e = i % 3;
+    const int low = std::min(triangles[t][e], triangles[t][(e + 1) % 3]);
+    const int high = std::max(triangles[t][e], triangles[t][(e + 1) % 3]);
+    HalfEdge* const begin = waiting.data() + first[low];
+    HalfEdge* const end = begin + n_waiting[low];
+    HalfEdge* const other = std::find_if(begin, end, [high](const HalfEdge& w) { return w.high == high; });
+    if (other == end) {
+      *end = {high, t, e};
+      ++n_waiting[low];
+    } else {
+      neighbour[t][e] = other->triangle;
+      neighbour[other->triangle][other->edge] = t;
     }
   }
-  std::sort(edges.begin(), edges.end(),
-            [](const HalfEdge& a, const HalfEdge& b) { return std::tie(a.low, a.high) < std::tie(b.low, b.high); });
-  std::vector<std::array<int, 3>> neighbour(triangles.size());
-  for (std::size_t i = 0; i + 1 < edges.size(); i += 2) {
-    CGAL_assertion(edges[i].low == edges[i + 1].low && edges[i].high == edges[i + 1].high);
-    neighbour[edges[i].triangle][edges[i].edge] = edges[i + 1].triangle;
-    neighbour[edges[i + 1].triangle][edges[i + 1].edge] = edges[i].triangle;
-  }
   return neighbour;
+}
+
+void turn_outward(const std::vector<Point>& vertices, std::vector<std::array<int, 3>>& tetrahedron) {
+  for (auto& [a, b, c] : tetrahedron) {
+    const int opposite = 0 + 1 + 2 + 3 - a - b - c;
+    if (CGAL::orientation(vertices[a], vertices[b], vertices[c], vertices[opposite]) == CGAL::POSITIVE) {
+      std::swap(b, c);
+    }
+  }
 }
 
 ConvexHull hull_of_selected(std::span<const Vector3> nodes, const std::vector<int>& selected) {
   std::vector<Point> points(selected.size());
   std::transform(selected.begin(), selected.end(), points.begin(), [&](int i) { return to_point(nodes[i]); });
   check_dimension(points);
-  // Into a Surface_mesh, not into plain vectors: that overload (CGAL 5.5) takes the kernel itself as its traits, whose
-  // planes are *constructed* in double; nearly coplanar nodes then give wrong hulls or a crash.
-  CGAL::Surface_mesh<Point> mesh;
-  CGAL::convex_hull_3(points.begin(), points.end(), mesh);
+  // The traits are named: the overload without them (CGAL 5.5) takes the kernel itself, whose planes are *constructed*
+  // in double; nearly coplanar nodes then give wrong hulls or a crash. With these a plane is three exact points.
+  std::vector<Point> vertices;
   ConvexHull hull;
-  hull.vertex.reserve(mesh.number_of_vertices());
-  for (const auto v : mesh.vertices()) {
-    const Point& p = mesh.point(v);
+  CGAL::convex_hull_3<std::vector<Point>::const_iterator, Point>(points.begin(), points.end(), vertices, hull.triangle,
+                                                                 Traits());
+  if (hull.triangle.size() == 4) {
+    turn_outward(vertices, hull.triangle); // CGAL 5.5 may return the four faces of a tetrahedron inside out
+  }
+  hull.vertex.reserve(vertices.size());
+  for (const Point& p : vertices) {
     hull.vertex.emplace_back(p.x(), p.y(), p.z());
   }
-  hull.triangle.reserve(mesh.number_of_faces());
-  for (const auto face : mesh.faces()) {
-    std::array<int, 3> corners{};
-    int n = 0;
-    for (const auto v : mesh.vertices_around_face(mesh.halfedge(face))) {
-      corners.at(n++) = static_cast<int>(v.idx());
-    }
-    hull.triangle.push_back(corners);
-  }
   hull.node = find_nodes(nodes, selected, hull.vertex);
-  hull.neighbour = adjacency(hull.triangle);
+  hull.neighbour = adjacency(hull.triangle, hull.vertex.size());
   return hull;
 }
 
@@ -144,18 +156,17 @@ std::vector<Vector3> sphere_directions(int n) {
   return directions;
 }
 
-/// The lowest-numbered node that reaches farthest, for each direction; ascending, each once.
+/// A node that reaches farthest, for each direction; ascending, each once.
 std::vector<int> extreme_nodes(std::span<const Vector3> nodes, const std::vector<Vector3>& directions) {
-  std::vector<int> extreme(directions.size());
-  for (std::size_t k = 0; k < directions.size(); ++k) {
-    double farthest = nodes[0].dot(directions[k]);
-    for (std::size_t i = 1; i < nodes.size(); ++i) {
-      const double reach = nodes[i].dot(directions[k]);
-      if (reach > farthest) {
-        farthest = reach;
-        extreme[k] = static_cast<int>(i);
-      }
-    }
+  const Eigen::Map<const Eigen::Matrix3Xd> x(nodes.front().data(), 3, static_cast<Eigen::Index>(nodes.size()));
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> coordinates = x.transpose(); // each coordinate contiguous
+  std::vector<int> extreme;
+  Eigen::VectorXd reach(x.cols());
+  for (const Vector3& direction : directions) {
+    reach.noalias() =
+        coordinates.col(0) * direction[0] + coordinates.col(1) * direction[1] + coordinates.col(2) * direction[2];
+    const double farthest = reach.maxCoeff();
+    extreme.push_back(static_cast<int>(std::find(reach.begin(), reach.end(), farthest) - reach.begin()));
   }
   std::sort(extreme.begin(), extreme.end());
   extreme.erase(std::unique(extreme.begin(), extreme.end()), extreme.end());
@@ -214,7 +225,7 @@ bool is_inside(const InnerHalfSpaces& inner, const Vector3& x) {
 } // namespace
 
 std::vector<int> hull_candidates(std::span<const Vector3> nodes) {
-  static const std::vector<Vector3> directions = sphere_directions(96);
+  static const std::vector<Vector3> directions = sphere_directions(32);
   if (nodes.size() < 2 * directions.size()) {
     return all_of(nodes);
   }

@@ -74,26 +74,25 @@ public:
     }
   }
 
+  /// The free triangles connected to `seed` whose normals are near the seed's; `area()` is then theirs.
   const std::vector<int>& region_of(int seed) {
     ++visit_;
     region_.assign(1, seed);
     visited_[seed] = visit_;
+    area_ = geometry_.area[seed];
+    const Vector3 normal = geometry_.normal[seed];
     for (std::size_t i = 0; i < region_.size(); ++i) {
       for (const int next : hull_.neighbour[region_[i]]) {
-        if (visited_[next] != visit_ && !is_taken(next) &&
-            geometry_.normal[next].dot(geometry_.normal[seed]) > min_cosine_) {
+        if (visited_[next] != visit_ && !is_taken(next) && geometry_.normal[next].dot(normal) > min_cosine_) {
           visited_[next] = visit_;
+          area_ += geometry_.area[next];
           region_.push_back(next);
         }
       }
     }
     return region_;
   }
-
-  double area_of(const std::vector<int>& region) const {
-    return std::accumulate(region.begin(), region.end(), 0.0,
-                           [&](double sum, int t) { return sum + geometry_.area[t]; });
-  }
+  double area() const { return area_; }
 
 private:
   const ConvexHull& hull_;
@@ -103,6 +102,7 @@ private:
   std::vector<int> visited_;
   std::vector<int> region_;
   int visit_ = -1;
+  double area_ = 0.0;
 };
 
 } // namespace
@@ -147,7 +147,8 @@ Facets grown_facets(const ConvexHull& hull, const FacetOptions& options) {
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry> queue;
   for (int t = 0; t < hull.n_triangles(); ++t) {
-    queue.emplace(grower.area_of(grower.region_of(t)), -t);
+    grower.region_of(t);
+    queue.emplace(grower.area(), -t);
   }
   std::vector<std::vector<int>> groups;
   while (!queue.empty() && queue.top().first >= min_area) {
@@ -157,7 +158,7 @@ Facets grown_facets(const ConvexHull& hull, const FacetOptions& options) {
       continue;
     }
     const std::vector<int>& region = grower.region_of(seed);
-    const Entry now{grower.area_of(region), -seed};
+    const Entry now{grower.area(), -seed};
     if (queue.empty() || now >= queue.top()) {
       if (now.first >= min_area) {
         groups.push_back(region);

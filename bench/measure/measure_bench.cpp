@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a frame costs to measure. Grains: a deformed grain of 5141 nodes (tests/data/measure), turned at random and put
+// on a cubic lattice so close that neighbours touch.
+#include "bpm/measure/bond_order.h"
+#include "bpm/measure/contact_network.h"
+#include "bpm/measure/convex_hull.h"
+#include "bpm/measure/hull_facets.h"
+#include "bpm/measure/hull_shape.h"
+#include "bpm/measure/packing_fraction.h"
+#include "bpm/measure/parallel_loop.h"
+#include "bpm/measure/philox.h"
+#include "bpm/measure/scattering.h"
+#include "tests/unit/measure/grain_file.h"
+
+#include <Eigen/Geometry>
+#include <benchmark/benchmark.h>
+#include <cmath>
+
+namespace {
+
+using namespace boba;
+using namespace boba::measure;
+
+/// n1 n2 n3 grains of 5141 or 303 nodes with their hulls.
+struct LatticePacking {
+  Box box;
+  std::vector<Vector3> nodes;
+  std::vector<std::int64_t> first_node{0};
+  std::vector<ConvexHull> hulls;
+
+  LatticePacking(int n1, int n2, int n3, int n_nodes) {
+    const auto source = test_data::read_grains(n_nodes > 303 ? "deformed_grain_5141.csv" : "deformed_grains_303.csv");
+    const auto grain = source.nodes_of(0);
+    const Vector3 centre = mean_position(grain);
+    const double spacing = n_nodes > 303 ? 18.5 : 7.0;
+    box = Box(Vector3::Zero(), spacing * Vector3(n1, n2, n3), {0.3 * spacing * n1, 0.0, 0.0});
+    for (int g = 0; g < n1 * n2 * n3; ++g) {
+      const auto u = random_point(1, g);
+      const Eigen::Quaterniond turn = Eigen::Quaterniond(u[0] - 0.5, u[1] - 0.5, u[2] - 0.5, 0.3).normalized();
+      const Vector3 at =
+          box.to_position(Vector3((g % n1 + 0.5) / n1, (g / n1 % n2 + 0.5) / n2, (g / (n1 * n2) + 0.5) / n3));
+      for (const Vector3& x : grain) {
+        nodes.push_back(at + turn * (x - centre));
+      }
+      first_node.push_back(static_cast<std::int64_t>(nodes.size()));
+    }
+    hulls.resize(n1 * n2 * n3);
+    parallel_loop(n1 * n2 * n3,
+                  [&](std::int64_t g) { hulls[g] = convex_hull(grains().nodes_of(static_cast<int>(g))); });
+  }
+  GrainNodes grains() const { return {nodes, first_node}; }
+};
+
+const LatticePacking& large() {
+  static const LatticePacking packing(8, 8, 16, 5141);
+  return packing;
+}
+
+const LatticePacking& small() {
+  static const LatticePacking packing(4, 4, 4, 303);
+  return packing;
+}
+
+/// Hull, shape and facets by both rules of each of 1024 grains.
+void hulls_of_a_frame(benchmark::State& state) {
+  const LatticePacking& packing = large();
+  for (auto _ : state) {
+    std::vector<double> kept(packing.grains().n_grains());
+    parallel_loop(packing.grains().n_grains(), [&](std::int64_t g) {
+      const ConvexHull hull = convex_hull(packing.grains().nodes_of(static_cast<int>(g)));
+      kept[g] = hull_shape(hull).volume + transitive_facets(hull).n_facets() + grown_facets(hull).n_facets();
+    });
+    benchmark::DoNotOptimize(kept.data());
+  }
+}
+BENCHMARK(hulls_of_a_frame)->Unit(benchmark::kSecond)->Iterations(1)->UseRealTime();
+
+/// The parts of one grain's share of it.
+void one_hull(benchmark::State& state) {
+  const auto nodes = large().grains().nodes_of(0);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(convex_hull(nodes).n_triangles());
+  }
+  state.counters["candidates"] = static_cast<double>(hull_candidates(nodes).size());
+}
+BENCHMARK(one_hull)->Unit(benchmark::kMillisecond);
+
+void one_hull_without_skipping_nodes(benchmark::State& state) {
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(convex_hull_of_all(large().grains().nodes_of(0)).n_triangles());
+  }
+}
+BENCHMARK(one_hull_without_skipping_nodes)->Unit(benchmark::kMillisecond);
+
+void facets_of_one_hull(benchmark::State& state) {
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(grown_facets(large().hulls[0]).n_facets());
+    benchmark::DoNotOptimize(transitive_facets(large().hulls[0]).n_facets());
+  }
+}
+BENCHMARK(facets_of_one_hull)->Unit(benchmark::kMillisecond);
+
+/// phi of 5.3 million nodes to 1e-3, the hulls given.
+void packing_fraction_to_a_thousandth(benchmark::State& state) {
+  PackingFraction phi;
+  for (auto _ : state) {
+    phi = packing_fraction(large().box, large().grains(), large().hulls, {.target_error = 1e-3});
+  }
+  state.counters["phi"] = phi.both.value;
+  state.counters["error"] = phi.both.standard_error;
+  state.counters["points"] = static_cast<double>(phi.n_points);
+}
+BENCHMARK(packing_fraction_to_a_thousandth)->Unit(benchmark::kSecond)->Iterations(1)->UseRealTime();
+
+/// S(q) of 64 grains of 303 nodes up to q = 3 / d.
+void scattering_of_64_small_grains(benchmark::State& state) {
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(scattering(small().box, small().grains(), {.q_max = 3.0}).size());
+  }
+  const double work =
+      static_cast<double>(small().nodes.size()) * static_cast<double>(ReciprocalLattice(small().box, 3.0).n_vectors());
+  state.counters["node_vectors_per_s"] = benchmark::Counter(work, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(scattering_of_64_small_grains)->Unit(benchmark::kSecond)->UseRealTime();
+
+/// S(q) of 5.3 million nodes: the cost is nodes x wave vectors, and those grow as q_max^3; argument: q_max in 0.01 / d.
+void scattering_of_1024_grains(benchmark::State& state) {
+  const double q_max = 0.01 * static_cast<double>(state.range(0));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(scattering(large().box, large().grains(), {.q_max = q_max}).size());
+  }
+  const double vectors = static_cast<double>(ReciprocalLattice(large().box, q_max).n_vectors());
+  const double work = static_cast<double>(large().nodes.size()) * vectors;
+  state.counters["vectors"] = vectors;
+  state.counters["node_vectors_per_s"] = benchmark::Counter(work, benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(scattering_of_1024_grains)->Arg(20)->Arg(40)->Unit(benchmark::kSecond)->Iterations(1)->UseRealTime();
+
+void order_of_1024_grains(benchmark::State& state) {
+  const auto centres = grain_centres(large().grains());
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(bond_order(solid_angle_neighbours(large().box, centres)).data());
+  }
+}
+BENCHMARK(order_of_1024_grains)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void contact_network_of_1024_grains(benchmark::State& state) {
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(contact_network(large().box, large().grains()).size());
+  }
+}
+BENCHMARK(contact_network_of_1024_grains)->Unit(benchmark::kSecond)->Iterations(1)->UseRealTime();
+
+} // namespace
