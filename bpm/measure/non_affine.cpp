@@ -78,6 +78,22 @@ double NonAffineMotion::mean_square() const {
   return sum / static_cast<double>(displacement_.size());
 }
 
+std::vector<std::vector<Vector3>> neighbour_displacements(const NeighbourLists& neighbours,
+                                                          std::span<const Vector3> before,
+                                                          std::span<const Vector3> after, const Matrix3& f) {
+  check_count(before.size(), neighbours.size());
+  check_count(after.size(), neighbours.size());
+  std::vector<std::vector<Vector3>> change(neighbours.size());
+  for (std::size_t i = 0; i < neighbours.size(); ++i) {
+    for (const Neighbour& neighbour : neighbours[i]) {
+      const int j = neighbour.grain;
+      const Vector3 image_shift = neighbour.vector - (before[j] - before[i]); // h n: moves with the cell
+      change[i].push_back((after[j] - after[i]) - (before[j] - before[i]) + (f - Matrix3::Identity()) * image_shift);
+    }
+  }
+  return change;
+}
+
 std::vector<double> minimal_non_affinity(const NeighbourLists& neighbours,
                                          const std::vector<std::vector<Vector3>>& displacement_change) {
   check_count(displacement_change.size(), neighbours.size());

@@ -35,6 +35,15 @@ private:
   std::vector<Vector3> centre_, displacement_;
 };
 
+/// d_j(after) - d_j(before) of every neighbour vector, for `minimal_non_affinity`: the same pair and the same periodic
+/// copy, which moves with the cell: (x_j - x_i)(after) - (x_j - x_i)(before) + (F - 1) (d_j - x_j + x_i)(before), d.
+///
+/// \param neighbours vectors in the first frame  \param f deformation_gradient between the frames
+/// \throws std::invalid_argument when the numbers of grains differ.
+std::vector<std::vector<Vector3>> neighbour_displacements(const NeighbourLists& neighbours,
+                                                          std::span<const Vector3> before,
+                                                          std::span<const Vector3> after, const Matrix3& f);
+
 /// How much the neighbourhood of each grain changed other than by a uniform strain, per neighbour:
 /// D2_min = min over F of (1/n) sum_j |d_j(after) - F d_j(before)|^2, d^2.
 ///

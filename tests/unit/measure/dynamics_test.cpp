@@ -164,6 +164,25 @@ TEST(NonAffine, MinimalNonAffinityIgnoresUniformStrain) {
   EXPECT_NEAR(minimal_non_affinity(neighbours, change)[0], 0.01 * (1.0 - 0.25) / 12.0, 1e-12);
 }
 
+TEST(NonAffine, NeighbourDisplacementsFollowPeriodicCopiesThroughAFlip) {
+  Flow flow;
+  for (int i = 0; i < 3; ++i) {
+    const Box before = flow.box;
+    const std::vector<Vector3> centres = flow.centres;
+    const NeighbourLists neighbours = solid_angle_neighbours(before, centres);
+    flow.step(0.6, 0.99); // more than half a cell: flips
+    const Matrix3 f = deformation_gradient(before, flow.box, 0.6);
+    for (const double d2 :
+         minimal_non_affinity(neighbours, neighbour_displacements(neighbours, centres, flow.centres, f))) {
+      EXPECT_LT(d2, 1e-18);
+    }
+    // An affine map takes each neighbour vector to F d.
+    const auto change = neighbour_displacements(neighbours, centres, flow.centres, f);
+    const Vector3 d = neighbours[7][0].vector;
+    EXPECT_NEAR((d + change[7][0] - f * d).norm(), 0.0, 1e-9);
+  }
+}
+
 TEST(NonAffine, NeighbourChangesCountBothSides) {
   const NeighbourLists before = {
       {{1, Vector3::UnitX()}, {2, Vector3::UnitY()}, {2, -Vector3::UnitY()}}, {{0}}, {{0}, {0}}};

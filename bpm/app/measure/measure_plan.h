@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/laws/material.h"
+#include "bpm/measure/bond_order.h"
+#include "bpm/measure/hull_facets.h"
+#include "bpm/measure/packing_fraction.h"
+#include "bpm/measure/scattering.h"
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace boba {
+
+/// What can be measured on a frame; each kind writes its own tables. Source: docs/formats-measure.md.
+enum class MeasureKind { stress, packing_fraction, shape, scattering, order, contacts, motion };
+
+enum class NeighbourRule { solid_angle, voronoi };
+
+/// Which measures are taken, and how.
+struct MeasurePlan {
+  std::set<MeasureKind> kinds;
+  measure::PackingFractionOptions packing_fraction;
+  measure::FacetOptions facets;
+  bool facet_sensitivity = false; ///< facets also at other thresholds, into a table of their own
+  measure::ScatteringOptions scattering;
+  measure::BondOrderOptions order;
+  NeighbourRule neighbours = NeighbourRule::solid_angle;
+  Material material;
+
+  bool has(MeasureKind kind) const { return kinds.contains(kind); }
+};
+
+/// The names that the command line and scenes use: stress, packing-fraction, shape, scattering, order, contacts,
+/// motion.
+std::vector<std::string> measure_names();
+
+/// Kinds from their names; "all" means every one.
+/// \throws std::invalid_argument for another name, with the names there are.
+std::set<MeasureKind> measure_kinds(const std::vector<std::string>& names);
+
+} // namespace boba

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/app/measure/measure_plan.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace boba {
+
+/// What `boba measure` was asked to do.
+struct MeasureRunOptions {
+  std::filesystem::path run;    ///< output folder of a run, or a trajectory file
+  std::filesystem::path output; ///< folder of the tables; empty: `measures` in the run's folder
+  MeasurePlan plan;
+  std::int64_t every = 1;                      ///< every so many frames, from the first
+  std::optional<double> every_strain;          ///< instead: a frame whenever the strain has changed by this much
+  std::optional<std::int64_t> only_frame;      ///< this frame alone; negative counts from the end
+  std::optional<std::array<double, 2>> window; ///< strain window of averages.json; all frames without it
+  bool force = false;                          ///< replace tables that are there
+  int threads = 0;                             ///< 0: all cores
+};
+
+struct MeasureRunResult {
+  std::int64_t n_frames = 0;
+  std::filesystem::path folder;
+  bool undeformed_known = true; ///< false: no frame shows the undeformed grains, so the baseline columns are empty
+  bool velocity_known = true; ///< false: no velocities are stored, so the kinetic part of the stress is not told apart
+  std::string averages;       ///< lines for the terminal: quantity, mean, standard error
+};
+
+/// Measures the stored frames of a finished or running run.
+/// \throws InputError for a run that cannot be read or a frame that is not there; std::runtime_error when tables exist
+/// (without `force`) or cannot be written.
+MeasureRunResult measure_run(const MeasureRunOptions& options);
+
+} // namespace boba

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/app/measure/measure_tables.h"
+
+#include "bpm/measure/parallel_loop.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace boba {
+
+using namespace measure;
+
+namespace {
+
+struct Spread {
+  double mean = 0.0, deviation = 0.0;
+};
+
+Spread spread(const std::vector<double>& values) {
+  const double n = static_cast<double>(values.size());
+  Spread result;
+  result.mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  for (const double value : values) {
+    result.deviation += (value - result.mean) * (value - result.mean) / n;
+  }
+  result.deviation = std::sqrt(result.deviation);
+  return result;
+}
+
+template <class Value> double mean_of(std::size_t n, const Value& value) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    sum += value(i);
+  }
+  return n > 0 ? sum / static_cast<double>(n) : 0.0;
+}
+
+const std::vector<std::string> frame_columns = {"step", "time_tau", "strain"};
+
+std::vector<double> hull_radii(const std::vector<ConvexHull>& hulls) {
+  std::vector<double> radii;
+  for (const ConvexHull& hull : hulls) {
+    radii.push_back(std::cbrt(3.0 * hull_shape(hull).volume / (4.0 * std::numbers::pi)));
+  }
+  return radii;
+}
+
+} // namespace
+
+MeasureTables::MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan,
+                             UndeformedGrains undeformed, FileMode mode, std::int64_t last_step)
+    : folder_(std::move(folder)), topology_(topology), plan_(std::move(plan)) {
+  if (plan_.has(MeasureKind::shape) || plan_.has(MeasureKind::packing_fraction)) {
+    for (const std::vector<Vector3>& nodes : undeformed.nodes) {
+      undeformed_hulls_.push_back(nodes.empty() ? std::nullopt : std::optional(convex_hull(nodes)));
+    }
+  }
+  undeformed_hulls_.resize(1 + *std::max_element(topology_.template_index.begin(), topology_.template_index.end()));
+  for (const auto& hull : undeformed_hulls_) {
+    undeformed_.push_back(hull ? std::optional(grain_shape(*hull, plan_.facets)) : std::nullopt);
+  }
+  std::filesystem::create_directories(folder_);
+  open_tables(mode, last_step);
+}
+
+void MeasureTables::open(const std::string& name, const std::vector<std::string>& columns, FileMode mode,
+                         std::int64_t last_step) {
+  std::vector<std::string> all = frame_columns;
+  all.insert(all.end(), columns.begin(), columns.end());
+  const std::filesystem::path path = folder_ / (name + ".csv");
+  tables_.emplace(name,
+                  mode == FileMode::append ? TableWriter::go_on(path, all, last_step) : TableWriter(path, all, mode));
+}
+
+void MeasureTables::open_tables(FileMode mode, std::int64_t last_step) {
+  const auto table = [&](MeasureKind kind, const std::string& name, const std::vector<std::string>& columns) {
+    if (plan_.has(kind)) {
+      open(name, columns, mode, last_step);
+    }
+  };
+  using enum MeasureKind;
+  table(stress, "stress",
+        {"xx_k/d", "yy_k/d", "zz_k/d", "xy_k/d", "xz_k/d", "yz_k/d", "P_k/d", "mu", "N1_k/d", "N2_k/d",
+         "kinetic_xx_k/d", "kinetic_yy_k/d", "kinetic_zz_k/d", "kinetic_xy_k/d", "kinetic_xz_k/d", "kinetic_yz_k/d"});
+  table(stress, "grain_stress", {"grain", "xx_kd2", "yy_kd2", "zz_kd2", "xy_kd2", "xz_kd2", "yz_kd2"});
+  table(
+      packing_fraction, "packing_fraction",
+      {"phi", "phi_error", "phi_nodes", "phi_nodes_error", "phi_hulls", "phi_hulls_error", "points", "phi_reference"});
+  table(shape, "grains",
+        {"grain", "species", "volume_d3", "area_d2", "asphericity", "moment_1_d2", "moment_2_d2", "moment_3_d2",
+         "facets", "faceted_share", "facets_transitive", "faceted_share_transitive"});
+  table(shape, "facets", {"grain", "facet", "area_d2", "normal_x", "normal_y", "normal_z"});
+  std::vector<std::string> summary = {
+      "volume_mean_d3",      "volume_deviation_d3", "asphericity_mean",       "asphericity_deviation",   "facets_mean",
+      "twelve_facets_share", "faceted_share",       "facets_transitive_mean", "faceted_share_transitive"};
+  for (const char* name :
+       {"volume_d3", "asphericity", "facets", "faceted_share", "facets_transitive", "faceted_share_transitive"}) {
+    summary.push_back(std::string("undeformed_") + name);
+  }
+  table(shape, "shape", summary);
+  if (plan_.facet_sensitivity) {
+    table(shape, "facet_sensitivity",
+          {"min_cosine", "min_area_share", "facets_mean", "faceted_share", "undeformed_facets",
+           "undeformed_faceted_share"});
+  }
+  table(scattering, "scattering", {"q_1/d", "vectors", "intensity", "form_factor", "structure"});
+  table(order, "order",
+        {"fcc_share", "hcp_share", "bcc_share", "disordered_share", "q4_mean", "q6_mean", "averaged_q4_mean",
+         "averaged_q6_mean", "neighbours_mean"});
+  table(order, "grain_order",
+        {"grain", "q4", "q6", "averaged_q4", "averaged_q6", "averaged_w4", "averaged_w6", "neighbours", "solid_bonds",
+         "class"});
+  table(contacts, "contacts",
+        {"grain",      "other",      "image_a",    "image_b",    "image_c",   "pairs",    "area_d2",
+         "overlap_d",  "force_x_kd", "force_y_kd", "force_z_kd", "normal_x",  "normal_y", "normal_z",
+         "branch_x_d", "branch_y_d", "branch_z_d", "point_x_d",  "point_y_d", "point_z_d"});
+  table(contacts, "coordination",
+        {"contacts_per_grain", "contacts_without_rattlers", "rattlers", "area_mean_d2", "force_mean_kd", "fabric_xx",
+         "fabric_yy", "fabric_zz", "fabric_xy", "fabric_xz", "fabric_yz", "fabric_anisotropy"});
+  table(motion, "motion",
+        {"non_affine_square_d2", "d2min_mean_d2", "changed_share", "lost_per_grain", "gained_per_grain"});
+  table(motion, "grain_motion",
+        {"grain", "displacement_x_d", "displacement_y_d", "displacement_z_d", "d2min_d2", "lost", "gained"});
+}
+
+void MeasureTables::write(const std::string& table, const Snapshot& snapshot, const Row& values) {
+  Row row = {snapshot.time, snapshot.strain};
+  row.insert(row.end(), values.begin(), values.end());
+  tables_.at(table).write(snapshot.step, row);
+}
+
+void MeasureTables::note(const std::string& quantity, const Snapshot& snapshot, double value) {
+  series_[quantity].strain.push_back(snapshot.strain);
+  series_[quantity].value.push_back(value);
+}
+
+double MeasureTables::grain_number(int grain) const {
+  return static_cast<double>(topology_.molecule[grain]);
+}
+
+void MeasureTables::add(const Snapshot& snapshot) {
+  using enum MeasureKind;
+  Frame frame{snapshot, GrainNodes(snapshot.position, topology_.first_node), {}, {}};
+  if (plan_.has(shape) || plan_.has(packing_fraction) ||
+      (plan_.neighbours == NeighbourRule::voronoi && (plan_.has(order) || plan_.has(motion)))) {
+    frame.hulls = grain_hulls(frame.grains);
+  }
+  if (plan_.has(order) || plan_.has(motion)) {
+    find_neighbours(frame);
+  }
+  if (plan_.has(stress)) {
+    add_stress(snapshot);
+  }
+  if (plan_.has(packing_fraction)) {
+    add_packing_fraction(frame);
+  }
+  if (plan_.has(shape)) {
+    add_shape(frame);
+  }
+  if (plan_.has(shape) && plan_.facet_sensitivity) {
+    add_facet_sensitivity(frame);
+  }
+  if (plan_.has(scattering)) {
+    add_scattering(frame);
+  }
+  if (plan_.has(order)) {
+    add_order(frame);
+  }
+  if (plan_.has(contacts)) {
+    add_contacts(frame);
+  }
+  if (plan_.has(motion)) {
+    add_motion(frame);
+  }
+}
+
+void MeasureTables::find_neighbours(Frame& frame) const {
+  const auto centres = grain_centres(frame.grains);
+  frame.neighbours = plan_.neighbours == NeighbourRule::voronoi
+                         ? voronoi_neighbours(frame.snapshot.box, centres, hull_radii(frame.hulls))
+                         : solid_angle_neighbours(frame.snapshot.box, centres);
+}
+
+void MeasureTables::add_stress(const Snapshot& snapshot) {
+  Tensor6 total{};
+  for (std::size_t grain = 0; grain < snapshot.grain_stress.size(); ++grain) {
+    Row row = {grain_number(static_cast<int>(grain))};
+    for (int c = 0; c < 6; ++c) {
+      total[c] += snapshot.grain_stress[grain][c] / snapshot.box.volume();
+      row.emplace_back(snapshot.grain_stress[grain][c]);
+    }
+    write("grain_stress", snapshot, row);
+  }
+  const StressSummary summary = summarise_stress(total);
+  Row row(total.begin(), total.end());
+  for (const double value : {summary.pressure, summary.mu, summary.normal_difference_1, summary.normal_difference_2}) {
+    row.emplace_back(value);
+  }
+  if (snapshot.velocity.empty()) {
+    row.resize(16); // without velocities the kinetic part cannot be told apart: empty fields
+  } else {
+    const Tensor6 kinetic =
+        kinetic_stress(snapshot.box, snapshot.position, snapshot.velocity, plan_.material.node_mass);
+    row.insert(row.end(), kinetic.begin(), kinetic.end());
+  }
+  write("stress", snapshot, row);
+  note("mu", snapshot, summary.mu);
+  note("P_k/d", snapshot, summary.pressure);
+}
+
+void MeasureTables::add_packing_fraction(const Frame& frame) {
+  const PackingFraction phi =
+      measure::packing_fraction(frame.snapshot.box, frame.grains, frame.hulls, plan_.packing_fraction);
+  const auto volume = undeformed_mean(undeformed_, [](const GrainShape& s) { return s.shape.volume; });
+  write("packing_fraction", frame.snapshot,
+        {phi.both.value, phi.both.standard_error, phi.nodes.value, phi.nodes.standard_error, phi.hulls.value,
+         phi.hulls.standard_error, static_cast<double>(phi.n_points),
+         volume ? std::optional(*volume * topology_.n_grains() / frame.snapshot.box.volume()) : std::nullopt});
+  note("phi", frame.snapshot, phi.both.value);
+}
+
+void MeasureTables::add_shape(const Frame& frame) {
+  std::vector<GrainShape> shapes(frame.hulls.size());
+  std::vector<double> volumes, asphericities;
+  parallel_loop(static_cast<std::int64_t>(shapes.size()),
+                [&](std::int64_t g) { shapes[g] = grain_shape(frame.hulls[g], plan_.facets); });
+  for (std::size_t g = 0; g < shapes.size(); ++g) {
+    const auto& [shape, grown, transitive] = shapes[g];
+    volumes.push_back(shape.volume);
+    asphericities.push_back(shape.asphericity);
+    const double number = grain_number(static_cast<int>(g));
+    write("grains", frame.snapshot,
+          {number, static_cast<double>(topology_.species[g]), shape.volume, shape.area, shape.asphericity,
+           shape.moments[0], shape.moments[1], shape.moments[2], static_cast<double>(grown.n_facets()),
+           grown.faceted_share(), static_cast<double>(transitive.n_facets()), transitive.faceted_share()});
+    for (int f = 0; f < grown.n_facets(); ++f) {
+      const Vector3& n = grown.normal[f];
+      write("facets", frame.snapshot, {number, static_cast<double>(f), grown.area[f], n[0], n[1], n[2]});
+    }
+  }
+  const auto mean = [&](const auto& value) {
+    return mean_of(shapes.size(), [&](std::size_t g) { return static_cast<double>(value(shapes[g])); });
+  };
+  const Spread volume = spread(volumes), asphericity = spread(asphericities);
+  Row row = {volume.mean,
+             volume.deviation,
+             asphericity.mean,
+             asphericity.deviation,
+             mean([](const GrainShape& s) { return s.grown.n_facets(); }),
+             mean([](const GrainShape& s) { return s.grown.n_facets() == 12; }),
+             mean([](const GrainShape& s) { return s.grown.faceted_share(); }),
+             mean([](const GrainShape& s) { return s.transitive.n_facets(); }),
+             mean([](const GrainShape& s) { return s.transitive.faceted_share(); })};
+  const auto undeformed = [&](const auto& value) { row.push_back(undeformed_mean(undeformed_, value)); };
+  undeformed([](const GrainShape& s) { return s.shape.volume; });
+  undeformed([](const GrainShape& s) { return s.shape.asphericity; });
+  undeformed([](const GrainShape& s) { return s.grown.n_facets(); });
+  undeformed([](const GrainShape& s) { return s.grown.faceted_share(); });
+  undeformed([](const GrainShape& s) { return s.transitive.n_facets(); });
+  undeformed([](const GrainShape& s) { return s.transitive.faceted_share(); });
+  write("shape", frame.snapshot, row);
+  note("volume_mean_d3", frame.snapshot, volume.mean);
+  note("asphericity_mean", frame.snapshot, asphericity.mean);
+  note("facets_mean", frame.snapshot, *row[4]);
+}
+
+} // namespace boba

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/app/measure/grain_shapes.h"
+#include "bpm/app/measure/measure_plan.h"
+#include "bpm/io/table.h"
+#include "bpm/measure/non_affine.h"
+#include "bpm/measure/stress.h"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace boba {
+
+/// Measures frames and writes what was found into the tables of one folder.
+///
+/// Tables, columns and units: docs/formats-measure.md. Frames are given in the order of time.
+class MeasureTables {
+public:
+  /// \param last_step with FileMode::append: rows after this step are removed, and the tables go on
+  /// \throws std::runtime_error when a table exists (FileMode::create) or cannot be written.
+  MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan, UndeformedGrains undeformed,
+                FileMode mode, std::int64_t last_step = -1);
+
+  void add(const Snapshot& snapshot);
+
+  /// What was found, for averages: strain and value of each frame, by the name of the quantity.
+  struct Series {
+    std::vector<double> strain, value;
+  };
+  const std::map<std::string, Series>& series() const { return series_; }
+
+private:
+  using Row = std::vector<std::optional<double>>;
+
+  /// Hulls are needed by several measures: made once a frame, when the first asks.
+  struct Frame {
+    const Snapshot& snapshot;
+    measure::GrainNodes grains;
+    std::vector<measure::ConvexHull> hulls;
+    measure::NeighbourLists neighbours;
+  };
+
+  void open(const std::string& name, const std::vector<std::string>& columns, FileMode mode, std::int64_t last_step);
+  void open_tables(FileMode mode, std::int64_t last_step);
+  void write(const std::string& table, const Snapshot& snapshot, const Row& values);
+  void note(const std::string& quantity, const Snapshot& snapshot, double value);
+  double grain_number(int grain) const;
+
+  void add_stress(const Snapshot& snapshot);
+  void add_packing_fraction(const Frame& frame);
+  void add_shape(const Frame& frame);
+  void add_facet_sensitivity(const Frame& frame);
+  void add_scattering(const Frame& frame);
+  void add_order(const Frame& frame);
+  void add_contacts(const Frame& frame);
+  void add_motion(const Frame& frame);
+  void find_neighbours(Frame& frame) const;
+  /// Mean over the grains of what their undeformed template has; unknown when one of them is.
+  template <class Known, class Value>
+  std::optional<double> undeformed_mean(const std::vector<std::optional<Known>>& known, const Value& value) const {
+    double sum = 0.0;
+    for (const int index : topology_.template_index) {
+      if (!known[index]) {
+        return std::nullopt;
+      }
+      sum += static_cast<double>(value(*known[index]));
+    }
+    return sum / topology_.n_grains();
+  }
+
+  std::filesystem::path folder_;
+  const Topology topology_;
+  MeasurePlan plan_;
+  std::map<std::string, TableWriter> tables_;
+  std::map<std::string, Series> series_;
+
+  std::vector<std::optional<measure::ConvexHull>> undeformed_hulls_; ///< by template index
+  std::vector<std::optional<GrainShape>> undeformed_;                ///< by template index
+
+  /// The frame before, for motion.
+  struct Past {
+    Box box;
+    double strain;
+    std::vector<Vector3> centres;
+    measure::NeighbourLists neighbours;
+    measure::NonAffineMotion motion;
+  };
+  std::optional<Past> past_;
+};
+
+} // namespace boba

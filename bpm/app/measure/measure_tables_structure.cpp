@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The measures of structure and motion; those of stress and shape are in measure_tables.cpp.
+#include "bpm/app/measure/measure_tables.h"
+#include "bpm/measure/contact_network.h"
+#include "bpm/measure/parallel_loop.h"
+
+#include <array>
+#include <cmath>
+
+namespace boba {
+
+using namespace measure;
+
+void MeasureTables::add_facet_sensitivity(const Frame& frame) {
+  for (const double cosine : {0.98, 0.985, 0.99, 0.995}) {
+    for (const double area_share : {0.005, 0.01, 0.02}) {
+      const FacetOptions options{cosine, area_share};
+      const double n = static_cast<double>(frame.hulls.size());
+      std::vector<Facets> facets(frame.hulls.size());
+      parallel_loop(static_cast<std::int64_t>(facets.size()),
+                    [&](std::int64_t g) { facets[g] = grown_facets(frame.hulls[g], options); });
+      double count = 0.0, share = 0.0;
+      for (const Facets& of_grain : facets) {
+        count += of_grain.n_facets() / n;
+        share += of_grain.faceted_share() / n;
+      }
+      const auto of_undeformed = [&](const auto& value) {
+        return undeformed_mean(undeformed_hulls_,
+                               [&](const ConvexHull& hull) { return value(grown_facets(hull, options)); });
+      };
+      write("facet_sensitivity", frame.snapshot,
+            {cosine, area_share, count, share, of_undeformed([](const Facets& f) { return f.n_facets(); }),
+             of_undeformed([](const Facets& f) { return f.faceted_share(); })});
+    }
+  }
+}
+
+void MeasureTables::add_scattering(const Frame& frame) {
+  for (const ScatteringShell& shell : measure::scattering(frame.snapshot.box, frame.grains, plan_.scattering)) {
+    write("scattering", frame.snapshot,
+          {shell.q, static_cast<double>(shell.n_vectors), shell.intensity, shell.form_factor,
+           std::isfinite(shell.structure) ? std::optional(shell.structure) : std::nullopt});
+  }
+}
+
+void MeasureTables::add_order(const Frame& frame) {
+  const std::vector<BondOrder> orders = bond_order(frame.neighbours, plan_.order);
+  const double n = static_cast<double>(orders.size());
+  std::array<double, 5> mean{};
+  for (std::size_t g = 0; g < orders.size(); ++g) {
+    const BondOrder& o = orders[g];
+    write("grain_order", frame.snapshot,
+          {grain_number(static_cast<int>(g)), o.q4, o.q6, o.averaged_q4, o.averaged_q6, o.averaged_w4, o.averaged_w6,
+           static_cast<double>(o.n_neighbours), static_cast<double>(o.n_solid_bonds), static_cast<double>(o.crystal)});
+    const std::array<double, 5> values = {o.q4, o.q6, o.averaged_q4, o.averaged_q6,
+                                          static_cast<double>(o.n_neighbours)};
+    for (std::size_t k = 0; k < mean.size(); ++k) {
+      mean[k] += values[k] / n;
+    }
+  }
+  const std::array<int, 4> counts = count_classes(orders);
+  const auto share = [&](CrystalClass crystal) { return counts[static_cast<std::size_t>(crystal)] / n; };
+  write("order", frame.snapshot,
+        {share(CrystalClass::fcc), share(CrystalClass::hcp), share(CrystalClass::bcc), share(CrystalClass::disordered),
+         mean[0], mean[1], mean[2], mean[3], mean[4]});
+  note("ordered_share", frame.snapshot, 1.0 - share(CrystalClass::disordered));
+}
+
+void MeasureTables::add_contacts(const Frame& frame) {
+  const std::vector<GrainContact> contacts = contact_network(frame.snapshot.box, frame.grains, plan_.material);
+  double area = 0.0, force = 0.0;
+  for (const GrainContact& c : contacts) {
+    Row row = {grain_number(c.grain), grain_number(c.other)};
+    for (const double value :
+         {static_cast<double>(c.image[0]), static_cast<double>(c.image[1]), static_cast<double>(c.image[2]),
+          static_cast<double>(c.n_pairs), c.area, c.largest_overlap}) {
+      row.emplace_back(value);
+    }
+    for (const Vector3& vector : {c.force, c.normal, c.branch, c.point}) {
+      row.insert(row.end(), vector.data(), vector.data() + 3);
+    }
+    write("contacts", frame.snapshot, row);
+    area += c.area / static_cast<double>(contacts.size());
+    force += c.force.norm() / static_cast<double>(contacts.size());
+  }
+  const Coordination z = measure::coordination(frame.grains.n_grains(), contacts);
+  const Matrix3 fabric = fabric_tensor(contacts);
+  write("coordination", frame.snapshot,
+        {z.mean, z.mean_without_rattlers, static_cast<double>(z.n_rattlers), area, force, fabric(0, 0), fabric(1, 1),
+         fabric(2, 2), fabric(0, 1), fabric(0, 2), fabric(1, 2), fabric_anisotropy(fabric)});
+  note("contacts_per_grain", frame.snapshot, z.mean);
+}
+
+void MeasureTables::add_motion(const Frame& frame) {
+  const Snapshot& snapshot = frame.snapshot;
+  const auto centres = grain_centres(frame.grains);
+  if (!past_) {
+    past_.emplace(
+        Past{snapshot.box, snapshot.strain, centres, frame.neighbours, NonAffineMotion(snapshot.box, centres)});
+    return;
+  }
+  const double strain_step = snapshot.strain - past_->strain;
+  past_->motion.add(snapshot.box, centres, strain_step);
+  const Matrix3 f = deformation_gradient(past_->box, snapshot.box, strain_step);
+  const auto d2min =
+      minimal_non_affinity(past_->neighbours, neighbour_displacements(past_->neighbours, past_->centres, centres, f));
+  const NeighbourChanges changes = neighbour_changes(past_->neighbours, frame.neighbours);
+  const double n = static_cast<double>(centres.size());
+  double mean_d2min = 0.0, lost = 0.0, gained = 0.0;
+  for (std::size_t g = 0; g < centres.size(); ++g) {
+    const Vector3& u = past_->motion.displacements()[g];
+    write("grain_motion", snapshot,
+          {grain_number(static_cast<int>(g)), u[0], u[1], u[2], d2min[g], static_cast<double>(changes.lost[g]),
+           static_cast<double>(changes.gained[g])});
+    mean_d2min += d2min[g] / n;
+    lost += changes.lost[g] / n;
+    gained += changes.gained[g] / n;
+  }
+  write("motion", snapshot, {past_->motion.mean_square(), mean_d2min, changes.n_grains_changed / n, lost, gained});
+  past_->box = snapshot.box;
+  past_->strain = snapshot.strain;
+  past_->centres = centres;
+  past_->neighbours = frame.neighbours;
+}
+
+} // namespace boba
