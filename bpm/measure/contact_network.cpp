@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <stdexcept>
+#include <tuple>
 
 namespace boba::measure {
 
@@ -34,12 +35,19 @@ bool is_first_side(int grain, const NeighbourGrain& neighbour) {
 class NetworkBuilder {
 public:
   NetworkBuilder(const Box& box, const GrainNodes& grains, const Material& material)
-      : box_(box), grains_(grains), material_(material), bounds_(bounds_of(grains)), centres_(grain_centres(grains)) {}
+      : box_(box), grains_(grains), material_(material), bounds_(bounds_of(grains)), centres_(grain_centres(grains)),
+        grids_(grains.n_grains()) {
+    parallel_loop(grains.n_grains(), [&](std::int64_t g) {
+      grids_[g] = GrainGrid(grains.nodes_of(static_cast<int>(g)), bounds_[g], material.diameter);
+    });
+  }
 
   std::vector<GrainContact> contacts_of(int grain) const {
     std::vector<GrainContact> contacts;
-    const auto neighbours = neighbour_grains(grain, bounds_, box_, material_.diameter);
-    const ContactSearch search(grains_.nodes_of(grain), bounds_[grain], material_.diameter);
+    auto neighbours = neighbour_grains(grain, bounds_, box_, material_.diameter);
+    std::sort(neighbours.begin(), neighbours.end(), [](const NeighbourGrain& a, const NeighbourGrain& b) {
+      return std::tie(a.other, a.image) < std::tie(b.other, b.image);
+    });
     std::vector<CandidatePair> pairs;
     for (const NeighbourGrain& neighbour : neighbours) {
       if (!is_first_side(grain, neighbour)) {
@@ -47,7 +55,7 @@ public:
       }
       const Vector3 shift = box_.h() * Vector3(neighbour.image.a, neighbour.image.b, neighbour.image.c);
       pairs.clear();
-      search.add_neighbour(0, grains_.nodes_of(neighbour.other), shift, pairs);
+      add_pairs_between(grids_[grain], grids_[neighbour.other], shift, 0, pairs);
       GrainContact contact = contact_from(grain, neighbour.other, shift, pairs);
       if (contact.n_pairs > 0) {
         contact.image = {neighbour.image.a, neighbour.image.b, neighbour.image.c};
@@ -90,6 +98,7 @@ private:
   const Material& material_;
   std::vector<Bounds> bounds_;
   std::vector<Vector3> centres_;
+  std::vector<GrainGrid> grids_;
 };
 
 } // namespace
