@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <omp.h>
 
@@ -59,7 +60,7 @@ public:
       return true;
     }
     // A hair less than the interval: strains are sums of many steps.
-    if (last_strain_ && std::abs(snapshot.strain - *last_strain_) < *options_.every_strain * (1.0 - 1e-6)) {
+    if (std::abs(snapshot.strain - last_strain_) < *options_.every_strain * (1.0 - 1e-6)) {
       return false;
     }
     last_strain_ = snapshot.strain;
@@ -69,7 +70,7 @@ public:
 private:
   const MeasureRunOptions& options_;
   std::optional<std::int64_t> only_;
-  std::optional<double> last_strain_;
+  double last_strain_ = std::numeric_limits<double>::infinity(); ///< none yet: any frame is far from it
 };
 
 /// averages.json and the same for the terminal.
@@ -123,7 +124,9 @@ MeasureRunResult measure_run(const MeasureRunOptions& options) {
   if (options.only_frame) {
     reader.snapshot(*options.only_frame); // names what is there when the frame is not
   }
-  MeasureRunResult result{.folder = folder_of(options), .velocity_known = reader.has_velocity()};
+  MeasureRunResult result;
+  result.folder = folder_of(options);
+  result.velocity_known = reader.has_velocity();
   UndeformedGrains undeformed = undeformed_grains(reader.topology(), reader.snapshot(0));
   result.undeformed_known =
       std::none_of(undeformed.nodes.begin(), undeformed.nodes.end(), [](const auto& nodes) { return nodes.empty(); });
