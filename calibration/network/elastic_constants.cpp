@@ -35,9 +35,13 @@ Stiffness isotropic_stiffness(const ElasticConstants& constants) {
   return c;
 }
 
-double anisotropy(const Stiffness& c) { return tensor_norm(c - isotropic_stiffness(isotropic_part(c))) / tensor_norm(c); }
+double anisotropy(const Stiffness& c) {
+  return tensor_norm(c - isotropic_stiffness(isotropic_part(c))) / tensor_norm(c);
+}
 
-double asymmetry(const Stiffness& c) { return tensor_norm(c - c.transpose()) / tensor_norm(c); }
+double asymmetry(const Stiffness& c) {
+  return tensor_norm(c - c.transpose()) / tensor_norm(c);
+}
 
 Estimate estimate(const std::vector<double>& samples) {
   const auto n = static_cast<double>(samples.size());

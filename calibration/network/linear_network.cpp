@@ -4,9 +4,8 @@
 #include "bpm/grain/bond_network.h"
 #include "bpm/grain/near_pairs.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <stdexcept>
 
 namespace boba::calibration {
@@ -23,7 +22,8 @@ LinearNetwork::LinearNetwork(const GrainTemplate& grain)
     if (period_) {
       difference = wrapped(difference, *period_);
     }
-    bonds_.push_back({bond.i, bond.j, difference / bond.r0, bond.r0, 1.0 / (node_volume[bond.i] + node_volume[bond.j])});
+    bonds_.push_back(
+        {bond.i, bond.j, difference / bond.r0, bond.r0, 1.0 / (node_volume[bond.i] + node_volume[bond.j])});
   }
 }
 

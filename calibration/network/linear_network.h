@@ -4,7 +4,6 @@
 #include "bpm/grain/grain_template.h"
 
 #include <Eigen/Core>
-
 #include <optional>
 #include <vector>
 

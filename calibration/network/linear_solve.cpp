@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibration/network/linear_solve.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace boba::calibration {
 
@@ -25,8 +24,9 @@ int solve_or_throw(KSP solver, Vec right_hand_side, Vec solution, const std::str
   check(KSPGetConvergedReason(solver, &reason), "KSPGetConvergedReason");
   check(KSPGetIterationNumber(solver, &iterations), "KSPGetIterationNumber");
   if (reason <= 0) {
-    throw std::runtime_error(fmt::format("{}: the linear solve did not converge ({}, {} iterations); last residuals: {}", what,
-                                         KSPConvergedReasons[reason], iterations, residual_history_end(solver)));
+    throw std::runtime_error(
+        fmt::format("{}: the linear solve did not converge ({}, {} iterations); last residuals: {}", what,
+                    KSPConvergedReasons[reason], iterations, residual_history_end(solver)));
   }
   return static_cast<int>(iterations);
 }

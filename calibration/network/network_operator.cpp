@@ -36,7 +36,8 @@ Matrix to_petsc(const BlockRows& rows) {
   std::vector<int> blocks_in_row(n);
   std::transform(rows.begin(), rows.end(), blocks_in_row.begin(), [](const auto& row) { return row.size(); });
   Matrix matrix;
-  check(MatCreateSeqBAIJ(PETSC_COMM_SELF, 3, 3 * n, 3 * n, 0, blocks_in_row.data(), matrix.address()), "MatCreateSeqBAIJ");
+  check(MatCreateSeqBAIJ(PETSC_COMM_SELF, 3, 3 * n, 3 * n, 0, blocks_in_row.data(), matrix.address()),
+        "MatCreateSeqBAIJ");
   check(MatSetOption(matrix, MAT_ROW_ORIENTED, PETSC_FALSE), "MatSetOption"); // Eigen stores columns
   for (int i = 0; i < n; ++i) {
     for (const auto& [j, block] : rows[i]) {
@@ -61,7 +62,8 @@ template <class Weight> BlockRows pair_rows(const LinearNetwork& network, Weight
   return rows;
 }
 
-/// Subtracts B^T W N^T R B: with the nodal sums q_m = sum_b r0^2 B_b u = G_m u, bond b pulls with -(q_i + q_j) / (V0_i + V0_j).
+/// Subtracts B^T W N^T R B: with the nodal sums q_m = sum_b r0^2 B_b u = G_m u, bond b pulls with -(q_i + q_j) / (V0_i
+/// + V0_j).
 void subtract_many_body(BlockRows& rows, const LinearNetwork& network) {
   std::vector<std::map<int, Vector3>> gather(network.n_nodes()), scatter(network.n_nodes());
   const auto add = [](std::map<int, Vector3>& row, int column, const Vector3& value) {
@@ -120,7 +122,8 @@ NullSpace rigid_motions(const LinearNetwork& network) {
 
 } // namespace
 
-NetworkOperator::NetworkOperator(const LinearNetwork& network) : network_(network), null_space_(rigid_motions(network)) {
+NetworkOperator::NetworkOperator(const LinearNetwork& network)
+    : network_(network), null_space_(rigid_motions(network)) {
   const int n = 3 * network.n_nodes();
   check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, this, shell_.address()), "MatCreateShell");
   check(MatShellSetOperation(shell_, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)), "MatShellSetOperation");

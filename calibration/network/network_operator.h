@@ -10,7 +10,8 @@ namespace boba::calibration {
 ///
 /// * `matrix()` applies the operator from the bond list (no matrix of second neighbours, 16 times smaller than the
 ///   assembled one and several times as fast);
-/// * `pair_matrix()` is its nearest-neighbour part P = sum over bonds of (1 + alpha_p / r0) B_b^T B_b in 3x3 blocks, from
+/// * `pair_matrix()` is its nearest-neighbour part P = sum over bonds of (1 + alpha_p / r0) B_b^T B_b in 3x3 blocks,
+/// from
 ///   which the preconditioner is made: symmetric and positive, alpha_p = max(alpha, -0.7);
 /// * `assembled()` is the whole operator in 3x3 blocks, for checks and for solvers that need its entries.
 /// All know their null space: the translations, and the rotations of a network without a period.

@@ -3,9 +3,8 @@
 
 #include "calibration/network/linear_solve.h"
 
-#include <fmt/format.h>
-
 #include <array>
+#include <fmt/format.h>
 #include <stdexcept>
 
 namespace boba::calibration {
@@ -30,9 +29,9 @@ Vector new_vector(int n) {
   return v;
 }
 
-/// GMRES with the incomplete factors of the pair matrix, by measurement (bench/calibration): for 20000 nodes it needs 25 to
-/// 40 iterations a solve; BiCGStab takes 1.3 times and point-block Jacobi 1.4 times as long, and conjugate gradients, 1.15 times
-/// faster, have no right to converge on an operator that is not symmetric.
+/// GMRES with the incomplete factors of the pair matrix, by measurement (bench/calibration): for 20000 nodes it needs
+/// 25 to 40 iterations a solve; BiCGStab takes 1.3 times and point-block Jacobi 1.4 times as long, and conjugate
+/// gradients, 1.15 times faster, have no right to converge on an operator that is not symmetric.
 Solver new_solver(const SolveSettings& settings) {
   Solver solver;
   check(KSPCreate(PETSC_COMM_SELF, solver.address()), "KSPCreate");
@@ -61,7 +60,8 @@ void set_right_hand_side(const LinearNetwork& network, const std::vector<double>
 }
 
 /// Stress of the affine field plus the relaxation u.
-Eigen::Matrix<double, 6, 1> relaxed_stress(const LinearNetwork& network, const std::vector<double>& affine, Vec u, double alpha) {
+Eigen::Matrix<double, 6, 1> relaxed_stress(const LinearNetwork& network, const std::vector<double>& affine, Vec u,
+                                           double alpha) {
   const double* entries = nullptr;
   check(VecGetArrayRead(u, &entries), "VecGetArrayRead");
   std::vector<double> s = network.stretch(entries);
@@ -113,7 +113,8 @@ std::vector<StiffnessSolution> relaxed_stiffness(const LinearNetwork& network, c
     for (int q = 0; q < 6; ++q) {
       const std::vector<double> affine = network.affine_stretch(unit_strain(q));
       set_right_hand_side(network, network.tension(affine, alpha), b);
-      solution.iterations += solve_or_throw(solver, b, u[q], fmt::format("stiffness at alpha = {}, unit strain {}", alpha, q));
+      solution.iterations +=
+          solve_or_throw(solver, b, u[q], fmt::format("stiffness at alpha = {}, unit strain {}", alpha, q));
       solution.stiffness.col(q) = relaxed_stress(network, affine, u[q], alpha);
     }
     solutions.push_back(solution);

@@ -23,18 +23,18 @@ struct SolveSettings {
 
 struct StiffnessSolution {
   double alpha = 0.0;
-  Stiffness stiffness;      ///< relaxed, k/d
-  int iterations = 0;       ///< of the six solves together
+  Stiffness stiffness; ///< relaxed, k/d
+  int iterations = 0;  ///< of the six solves together
 };
 
 /// Relaxed stiffness of a periodic network for each alpha, in the order given.
 ///
 ///     C_pq = a_p^T T (a_q + B u_q) / volume,   B^T T B u_q = -B^T T a_q,   T = T0 + alpha T1
 ///
-/// with a_p the bonds' stretches under unit strain p. Each alpha starts from the solutions of the previous ones. The Krylov method
-/// and preconditioner can be changed through PETSC_OPTIONS with the prefix `network_` (`-network_ksp_type cg`).
-/// \throws std::invalid_argument for a network without a period; std::runtime_error with the end of the residual history
-/// when a solve does not converge.
+/// with a_p the bonds' stretches under unit strain p. Each alpha starts from the solutions of the previous ones. The
+/// Krylov method and preconditioner can be changed through PETSC_OPTIONS with the prefix `network_` (`-network_ksp_type
+/// cg`). \throws std::invalid_argument for a network without a period; std::runtime_error with the end of the residual
+/// history when a solve does not converge.
 std::vector<StiffnessSolution> relaxed_stiffness(const LinearNetwork& network, const std::vector<double>& alphas,
                                                  const SolveSettings& settings = {});
 

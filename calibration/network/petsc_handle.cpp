@@ -10,6 +10,8 @@ PetscSession::PetscSession() {
   check(PetscPopSignalHandler(), "PetscPopSignalHandler"); // a crash is the debugger's, not PETSc's
 }
 
-PetscSession::~PetscSession() { SlepcFinalize(); }
+PetscSession::~PetscSession() {
+  SlepcFinalize();
+}
 
 } // namespace boba::calibration

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <petscksp.h>
-
 #include <stdexcept>
 #include <string>
 #include <utility>

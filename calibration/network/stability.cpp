@@ -7,11 +7,11 @@
 #include "calibration/network/network_operator.h"
 #include "calibration/network/network_stiffness.h"
 
-#include <fmt/format.h>
-#include <slepceps.h>
-
+#include <algorithm>
 #include <cmath>
-#include <span>
+#include <fmt/format.h>
+#include <limits>
+#include <slepceps.h>
 #include <stdexcept>
 
 namespace boba::calibration {
@@ -120,7 +120,8 @@ Mode extreme_mode(Mat quotient, MatNullSpace null_space, EPSWhich which) {
   check(EPSGetConverged(eigen, &converged), "EPSGetConverged");
   check(EPSGetIterationNumber(eigen, &iterations), "EPSGetIterationNumber");
   if (converged < 1) {
-    throw std::runtime_error(fmt::format("stability limit: the eigenvalue solve did not converge in {} restarts", iterations));
+    throw std::runtime_error(
+        fmt::format("stability limit: the eigenvalue solve did not converge in {} restarts", iterations));
   }
   Vector v;
   check(MatCreateVecs(quotient, v.address(), nullptr), "MatCreateVecs");
@@ -128,6 +129,30 @@ Mode extreme_mode(Mat quotient, MatNullSpace null_space, EPSWhich which) {
   check(EPSGetEigenpair(eigen, 0, &mode.value, nullptr, v, nullptr), "EPSGetEigenpair");
   mode.square = node_squares(v);
   return mode;
+}
+
+StabilityLimit limit(const LinearNetwork& network, EPSWhich which) {
+  NetworkOperator op(network);
+  op.set_alpha(0.0);
+  Quotient quotient(op);
+  const int n = 3 * network.n_nodes();
+  Matrix shell;
+  check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &quotient, shell.address()), "MatCreateShell");
+  check(MatShellSetOperation(shell, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_quotient)),
+        "MatShellSetOperation");
+  const Mode mode = extreme_mode(shell, op.null_space(), which);
+  const bool lower = which == EPS_LARGEST_REAL;
+  if (lower ? mode.value <= 0.0 : mode.value >= 0.0) {
+    return {.alpha = (lower ? -1.0 : 1.0) * std::numeric_limits<double>::infinity()};
+  }
+  double fourth = 0.0;
+  for (const double square : mode.square) {
+    fourth += square * square;
+  }
+  const auto top = std::max_element(mode.square.begin(), mode.square.end());
+  return {.alpha = -1.0 / mode.value,
+          .node = static_cast<int>(top - mode.square.begin()),
+          .participation = 1.0 / (fourth * network.n_nodes())};
 }
 
 } // namespace
@@ -152,39 +177,18 @@ void require_rigid(const LinearNetwork& network) {
     const std::vector<double> square = node_squares(u);
     const int node = static_cast<int>(std::max_element(square.begin(), square.end()) - square.begin());
     const Vector3& x = network.position()[node];
-    throw std::invalid_argument(
-        fmt::format("the network is not rigid: a mechanism moves nodes without stretching a bond, node {} at ({:.4g}, {:.4g}, "
-                    "{:.4g}) most; last residuals: {}",
-                    node, x.x(), x.y(), x.z(), residual_history_end(solver)));
+    throw std::invalid_argument(fmt::format(
+        "the network is not rigid: a mechanism moves nodes without stretching a bond, node {} at ({:.4g}, {:.4g}, "
+        "{:.4g}) most; last residuals: {}",
+        node, x.x(), x.y(), x.z(), residual_history_end(solver)));
   }
 }
 
-StabilityLimits stability_limits(const LinearNetwork& network) {
-  NetworkOperator op(network);
-  op.set_alpha(0.0);
-  Quotient quotient(op);
-  const int n = 3 * network.n_nodes();
-  Matrix shell;
-  check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &quotient, shell.address()), "MatCreateShell");
-  check(MatShellSetOperation(shell, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_quotient)), "MatShellSetOperation");
-
-  StabilityLimits limits;
-  const Mode largest = extreme_mode(shell, op.null_space(), EPS_LARGEST_REAL);
-  if (largest.value > 0.0) {
-    limits.lower = -1.0 / largest.value;
-    const auto top = std::max_element(largest.square.begin(), largest.square.end());
-    limits.lower_node = static_cast<int>(top - largest.square.begin());
-    double fourth = 0.0;
-    for (const double square : largest.square) {
-      fourth += square * square;
-    }
-    limits.lower_participation = 1.0 / (fourth * network.n_nodes());
-  }
-  const Mode smallest = extreme_mode(shell, op.null_space(), EPS_SMALLEST_REAL);
-  if (smallest.value < 0.0) {
-    limits.upper = -1.0 / smallest.value;
-  }
-  return limits;
+StabilityLimit lower_stability_limit(const LinearNetwork& network) {
+  return limit(network, EPS_LARGEST_REAL);
+}
+StabilityLimit upper_stability_limit(const LinearNetwork& network) {
+  return limit(network, EPS_SMALLEST_REAL);
 }
 
 double affine_shear_limit(const LinearNetwork& network) {

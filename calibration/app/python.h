@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace boba::calibration {
+
+/// Runs one of this folder's scripts (installed beside the tables) with Debian's python3; false when it fails.
+bool run_python(const std::string& script, const std::vector<std::string>& arguments);
+
+} // namespace boba::calibration
