@@ -142,8 +142,8 @@ std::uint64_t checked_length(const std::filesystem::path& path) {
   }
   Checksum checksum;
   checksum.add(head);
-  std::string chunk(1 << 20, '\0');
   std::uint64_t left = length - head.size() - sizeof(std::uint64_t);
+  std::string chunk(std::min<std::uint64_t>(left, 1 << 20), '\0');
   while (left > 0) {
     const std::uint64_t n = std::min<std::uint64_t>(left, chunk.size());
     if (!in.read(chunk.data(), static_cast<std::streamsize>(n))) {

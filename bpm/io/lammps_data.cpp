@@ -3,6 +3,7 @@
 
 #include "bpm/io/id_table.h"
 #include "bpm/io/line_reader.h"
+#include "bpm/io/usable_cell.h"
 
 #include <algorithm>
 #include <cctype>
@@ -190,6 +191,10 @@ Box DataReader::make_box() const {
     origin[axis] = (*header_.limits[axis])[0];
     lengths[axis] = (*header_.limits[axis])[1] - (*header_.limits[axis])[0];
   }
+  if (!is_usable_cell(lengths, header_.tilts)) {
+    in_.fail_file(fmt::format("a cell of lengths {} {} {} and tilts {} {} {} cannot be computed with", lengths[0],
+                              lengths[1], lengths[2], header_.tilts[0], header_.tilts[1], header_.tilts[2]));
+  }
   return Box(origin, lengths, header_.tilts);
 }
 
@@ -320,6 +325,9 @@ void DataReader::read_atom(const AtomStyle& style) {
       images[axis] = static_cast<double>(in_.integer(style.x + 3 + axis, "image flag"));
     }
     x += data_.box.h() * images;
+  }
+  if (!x.allFinite()) {
+    in_.fail("the position is beyond what numbers can hold");
   }
   data_.position.push_back(x);
 }

@@ -3,6 +3,7 @@
 
 #include "bpm/io/id_table.h"
 #include "bpm/io/line_reader.h"
+#include "bpm/io/usable_cell.h"
 
 #include <algorithm>
 #include <array>
@@ -128,9 +129,9 @@ Box DumpReader::read_box() {
   const double xy = tilts[0], xz = tilts[1], yz = tilts[2];
   low -= Vector3(std::min({0.0, xy, xz, xy + xz}), std::min(0.0, yz), 0.0);
   high -= Vector3(std::max({0.0, xy, xz, xy + xz}), std::max(0.0, yz), 0.0);
-  if (!(low.array() < high.array()).all()) {
-    in_.fail(fmt::format("the box has lengths {} {} {}; they must be positive", high[0] - low[0], high[1] - low[1],
-                         high[2] - low[2]));
+  if (!is_usable_cell(high - low, tilts)) {
+    in_.fail(fmt::format("the box has lengths {} {} {}; they must be positive and not too large", high[0] - low[0],
+                         high[1] - low[1], high[2] - low[2]));
   }
   return Box(low, high - low, tilts, periodic);
 }
@@ -191,6 +192,9 @@ Vector3 DumpReader::position_at(const Columns& columns, const Box& box) const {
       images[axis] = static_cast<double>(in_.integer(columns.image[axis], "image flag"));
     }
     x += box.h() * images;
+  }
+  if (!x.allFinite()) {
+    in_.fail("the position is beyond what numbers can hold");
   }
   return x;
 }

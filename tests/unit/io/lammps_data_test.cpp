@@ -226,6 +226,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Refusal{"NoLimits", "0.0 10.0 xlo xhi", "", {"xlo xhi"}},
                     Refusal{"InvertedLimits", "0.0 10.0 xlo", "10.0 10.0 xlo", {":11:", "10 and 10", "below"}},
                     Refusal{"NanLimits", "0.0 10.0 xlo", "0.0 NaN xlo", {":11:", "NaN", "finite"}},
+                    Refusal{"OverflowingLimits", "0.0 10.0 xlo", "-1e308 1e308 xlo", {"cannot be computed with"}},
+                    Refusal{"OverflowingTilt", "0.5 -0.25 1.5 xy", "1e308 -0.25 1.5 xy", {"cannot be computed with"}},
                     Refusal{"GeneralTriclinic", "0.0 10.0 xlo xhi", "1 0 0 avec", {":11:", "avec"}},
                     Refusal{"TypeTooLarge", "7 2 1 1.5", "7 2 3 1.5", {":37:", "atom type is 3", "2 types"}},
                     Refusal{"BondTypeZero", "1 1 12 7\n2", "1 0 12 7\n2", {"bond type is 0", "1 or more"}},
