@@ -134,29 +134,46 @@ void Stepper::add_streaming(double rate, double sign) {
   set_residual_gradient(simple_shear(sign > 0.0 ? rate : 0.0));
 }
 
-double Stepper::pressure_when_scaled(double factor) {
-  Packing scaled = packing_;
-  const Snapshot now = snapshot({});
-  Box box = now.box;
-  box.set_h(factor * box.h());
-  scaled.box = box;
-  for (std::size_t i = 0; i < now.position.size(); ++i) {
-    scaled.position[i] = box.origin() + factor * (now.position[i] - box.origin());
-    scaled.velocity[i].setZero();
+double Stepper::virial_pressure_when_scaled(const AlignedVector& x, double factor) {
+  const Matrix3 map = factor * position_map_;
+  const Vector3 shift = box_.origin() - map * box_.origin();
+  for (const Block& block : layout_.blocks()) {
+    const std::int64_t stride = block.n_lanes;
+    for (std::int64_t node = 0; node < block.n_nodes; ++node) {
+      const std::int64_t first = block.offset + 3 * node * stride;
+      for (std::int64_t at = first; at < first + stride; ++at) {
+        const Vector3 scaled = map * Vector3(x[at], x[at + stride], x[at + 2 * stride]) + shift;
+        for (int c = 0; c < 3; ++c) {
+          state_.x[at + c * stride] = scaled[c];
+        }
+      }
+    }
   }
-  ForceField forces(scaled, layout_, material_, 0.01);
-  LaneState state(scaled, layout_);
-  forces.evaluate(state, box, {0.0, 0.0, Virial::trace, Matrix3::Zero()});
+  Box scaled_box = box_;
+  scaled_box.set_h(factor * box_.h());
+  forces_.contact_list().invalidate();
+  forces_.evaluate(state_, scaled_box, {0.0, 0.0, Virial::trace, residual_rate_});
   double virial = 0.0;
-  for (const GrainSums& grain : forces.grain_sums()) {
+  for (const GrainSums& grain : forces_.grain_sums()) {
     virial += grain.virial_trace;
   }
-  return virial / (3.0 * box.volume());
+  return virial / (3.0 * scaled_box.volume());
 }
 
 double Stepper::affine_bulk_modulus() {
+  const AlignedVector x = state_.x, f = state_.f;
+  const ForceField::Results results = forces_.results();
+  const std::vector<Wall> walls = forces_.walls();
   const double step = 1e-5;
-  return -(pressure_when_scaled(1.0 + step) - pressure_when_scaled(1.0 - step)) / (6.0 * step);
+  const double looser = virial_pressure_when_scaled(x, 1.0 + step);
+  const double tighter = virial_pressure_when_scaled(x, 1.0 - step);
+  // Nothing of the state has moved but these; the list of the next step is built anew and gives the same forces.
+  state_.x = x;
+  state_.f = f;
+  forces_.set_results(results);
+  forces_.walls() = walls;
+  forces_.contact_list().invalidate();
+  return (tighter - looser) / (6.0 * step);
 }
 
 double Stepper::sound_crossing(double bulk_modulus) const {

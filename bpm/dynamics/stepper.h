@@ -92,7 +92,7 @@ private:
   void check_drift(const std::vector<kernels::DriftResult>& results) const;
   void evaluate(const Evaluation& what);
   void sum_up();
-  double pressure_when_scaled(double factor);
+  double virial_pressure_when_scaled(const AlignedVector& x, double factor);
 
   Packing packing_;
   Material material_;

@@ -13,7 +13,8 @@ namespace boba {
 
 ForceField::ForceField(const Packing& packing, const LaneLayout& layout, const Material& material, double skin)
     : layout_(layout), material_(material), table_(kernels::best_table()), contact_list_(layout, material.diameter, skin),
-      sums_(layout.n_grains()), contact_sums_(layout.n_grains()) {
+      contact_sums_(layout.n_grains()) {
+  results_.grains.resize(layout.n_grains());
   for (const auto& grain_template : packing.templates) {
     networks_.emplace_back(*grain_template);
     has_periodic_template_ = has_periodic_template_ || grain_template->period.has_value();
@@ -101,7 +102,7 @@ void ForceField::bonds_of(const Block& block, LaneState& state, const Box& box, 
     if (block.grain[lane] < 0) {
       continue;
     }
-    GrainSums& grain = sums_[block.grain[lane]];
+    GrainSums& grain = results_.grains[block.grain[lane]];
     const kernels::ContactSums& contact = contact_sums_[block.grain[lane]];
     for (int c = 0; c < 6; ++c) {
       grain.virial[c] = sums.virial[c][lane] + contact.virial[c] + image_sums.virial[c][lane];
@@ -176,16 +177,16 @@ void ForceField::volumes_only(const LaneState& state) const {
 }
 
 void ForceField::reduce_contacts() {
-  contact_totals_ = {};
+  results_.contacts = {};
   double smallest_r2 = no_contact_r2;
   std::int64_t sides = 0;
   for (const kernels::ContactSums& sums : contact_sums_) {
     smallest_r2 = std::min(smallest_r2, sums.smallest_r2);
-    contact_totals_.energy += sums.potential;
+    results_.contacts.energy += sums.potential;
     sides += sums.n_touching;
   }
-  contact_totals_.n_touching = sides / 2;
-  contact_totals_.largest_overlap = smallest_r2 < no_contact_r2 ? material_.diameter - std::sqrt(smallest_r2) : 0.0;
+  results_.contacts.n_touching = sides / 2;
+  results_.contacts.largest_overlap = smallest_r2 < no_contact_r2 ? material_.diameter - std::sqrt(smallest_r2) : 0.0;
 }
 
 namespace {

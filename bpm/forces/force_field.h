@@ -52,8 +52,15 @@ public:
   /// Rebuilds the contact list when it must, and evaluates. Returns the sums of every grain (valid where asked for).
   void evaluate(LaneState& state, const Box& box, const Evaluation& what);
 
-  const std::vector<GrainSums>& grain_sums() const { return sums_; }
-  const ContactTotals& contact_totals() const { return contact_totals_; }
+  const std::vector<GrainSums>& grain_sums() const { return results_.grains; }
+  const ContactTotals& contact_totals() const { return results_.contacts; }
+  /// Sums of the last evaluation, and a way to put them back after one that was only a probe.
+  struct Results {
+    std::vector<GrainSums> grains;
+    ContactTotals contacts;
+  };
+  const Results& results() const { return results_; }
+  void set_results(Results results) { results_ = std::move(results); }
   /// The node volumes of every block with alpha != 0, computed and dropped: the benchmark's share of the bond pass.
   void volumes_only(const LaneState& state) const;
   /// Pairwise elastic energy of all bonds, k d^2; a pass of its own, for rare use.
@@ -88,9 +95,8 @@ private:
   std::vector<const NetworkData*> network_of_grain_;
   ContactList contact_list_;
   std::vector<Wall> walls_;
-  std::vector<GrainSums> sums_;
+  Results results_;
   std::vector<kernels::ContactSums> contact_sums_;
-  ContactTotals contact_totals_;
   bool has_periodic_template_ = false;
 };
 
