@@ -2,6 +2,9 @@
 #include "bpm/io/hdf5_file.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <functional>
 #include <numeric>
@@ -303,15 +306,33 @@ void File::set_reference(const std::string& object, const std::string& attribute
   put_attribute(object, attribute, H5T_STD_REF_OBJ, space, &reference);
 }
 
-void File::flush() const {
-  // The superblock, which is written first, names the length of the file. Were the file shorter at that moment, a kill
-  // would leave one that HDF5 refuses to open; so it gets its length beforehand.
+std::pair<int, std::uint64_t> File::descriptor_and_length() const {
   haddr_t length = 0;
   void* descriptor = nullptr;
+  check(H5Fget_eoa(id_, &length), "asking for the length");
+  check(H5Fget_vfd_handle(id_, H5P_DEFAULT, &descriptor), "asking for the descriptor");
+  return {*static_cast<int*>(descriptor), length};
+}
+
+void File::reserve(std::uint64_t n_bytes) const {
+  const auto [descriptor, length] = descriptor_and_length();
+  int code = EINTR;
+  while (code == EINTR) {
+    code = fallocate(descriptor, 0, 0, static_cast<off_t>(length + n_bytes)) == 0 ? 0 : errno;
+  }
+  if (code != 0 && code != EOPNOTSUPP && code != ENOSYS) {
+    throw std::runtime_error(
+        fmt::format("{}: no room for {} more bytes: {}", path_.string(), n_bytes, std::strerror(code)));
+  }
+}
+
+void File::flush() const {
+  // The superblock names the length of the file. Were the file shorter at that moment, a kill would leave one that HDF5
+  // refuses to open; so it gets its length beforehand.
+  const auto [descriptor, length] = descriptor_and_length();
   struct stat status = {};
-  if (H5Fget_eoa(id_, &length) >= 0 && H5Fget_vfd_handle(id_, H5P_DEFAULT, &descriptor) >= 0 &&
-      fstat(*static_cast<int*>(descriptor), &status) == 0 && static_cast<haddr_t>(status.st_size) < length) {
-    check(ftruncate(*static_cast<int*>(descriptor), static_cast<off_t>(length)), "growing the file");
+  if (fstat(descriptor, &status) == 0 && static_cast<std::uint64_t>(status.st_size) < length) {
+    check(ftruncate(descriptor, static_cast<off_t>(length)), "growing the file");
   }
   check(H5Fflush(id_, H5F_SCOPE_GLOBAL), "writing to the disk");
 }
@@ -321,6 +342,8 @@ void File::close() {
     return;
   }
   flush();
+  const auto [descriptor, length] = descriptor_and_length();
+  check(ftruncate(descriptor, static_cast<off_t>(length)), "giving back reserved space");
   id_ = Handle();
 }
 

@@ -108,6 +108,9 @@ public:
   void link(const std::string& name, const std::string& other_name) const;
   void set_reference(const std::string& object, const std::string& attribute, const std::string& target) const;
 
+  /// Takes room for this many more bytes on the disk. HDF5 cannot recover from a full disk: it crashes when it closes
+  /// the file, so the lack of room has to show before HDF5 meets it.
+  void reserve(std::uint64_t n_bytes) const;
   /// Hands all to the operating system so that the file can be read even if the process is killed right afterwards.
   void flush() const;
   void close();
@@ -115,6 +118,7 @@ public:
   const std::filesystem::path& path() const { return path_; }
 
 private:
+  std::pair<int, std::uint64_t> descriptor_and_length() const;
   hid_t check(hid_t result, const std::string& doing) const;
   void write_raw(const std::string& name, const void* values, hid_t type, hsize_t n, hsize_t width) const;
   void rewrite_raw(const std::string& name, const void* values, hid_t type) const;

@@ -20,6 +20,9 @@ std::string value_of(const char* element) {
   return std::string(element) + "/value";
 }
 
+/// What HDF5 may add for its indices of chunks and the small datasets in one frame, bytes.
+constexpr std::uint64_t index_room = 2 << 20;
+
 std::string step_name() {
   return std::string(position) + "/step";
 }
@@ -167,6 +170,7 @@ std::vector<std::string> all_growing(const File& file) {
 }
 
 void copy_frames(const File& from, const File& to, hsize_t n_frames) {
+  to.reserve(std::filesystem::file_size(from.path()));
   for (const std::string& name : all_growing(from)) {
     for (hsize_t frame = 0; frame < n_frames; ++frame) {
       if (name == step_name()) {
@@ -235,6 +239,8 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Topo
   impl_->n_grains = static_cast<std::size_t>(topology.n_grains());
   impl_->has_velocity = options.velocity;
   const File& file = impl_->file;
+  file.reserve(index_room + origin_of_file.scene.size() + 64 * topology.id.size() + 64 * topology.first_node.size() +
+               24 * topology.bonds.size());
   write_head(file, origin_of_file);
   file.make_group(box);
   const std::vector<std::int32_t> dimension = {3};
@@ -281,6 +287,7 @@ void TrajectoryWriter::write(const Snapshot& snapshot) {
     throw std::invalid_argument(fmt::format("trajectory: step {} comes after step {}", snapshot.step, out.last_step));
   }
   check_parts(snapshot, out.n_nodes, out.n_grains, out.has_velocity);
+  out.file.reserve(index_room + (out.has_velocity ? 60 : 36) * out.n_nodes + 72 * out.n_grains);
   if (!out.has_boundary) {
     std::vector<std::string> boundary;
     for (const bool periodic : snapshot.box.periodic()) {
@@ -326,7 +333,10 @@ std::int64_t TrajectoryWriter::n_frames() const {
 }
 
 void TrajectoryWriter::close() {
-  impl_->file.close();
+  if (impl_ != nullptr && impl_->file.is_open()) {
+    set_closed(impl_->file, true);
+    impl_->file.close();
+  }
 }
 
 } // namespace boba

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/trajectory.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/small_packing.h"
 #include "tests/support/temporary_folder.h"
 
@@ -61,6 +62,74 @@ void expect_all_frames(const std::filesystem::path& path, std::int64_t n_flushed
     ASSERT_EQ(read.velocity, wanted.velocity);
     ASSERT_LT((read.position[4] - wanted.position[4]).norm(), 1e-13);
     ASSERT_EQ(read.grain_stress, wanted.grain_stress);
+  }
+}
+
+/// Writes four frames in another process, which then ends with or without closing the file.
+void write_four_frames(const std::filesystem::path& path, bool with_close) {
+  const pid_t child = fork();
+  if (child == 0) {
+    auto* writer = new TrajectoryWriter(path, test::small_topology(), {}, {true, 3});
+    for (std::int64_t step = 0; step < 4; ++step) {
+      writer->write(test::small_snapshot(step));
+    }
+    if (with_close) {
+      writer->close();
+    }
+    _exit(0); // runs no destructor, like a kill
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_EQ(status, 0);
+}
+
+TEST(KilledRun, CopiesAFileThatWasNotClosedBeforeGoingOn) {
+  for (const bool with_close : {true, false}) {
+    const test::TemporaryFolder folder;
+    const auto path = folder / "run.h5md";
+    write_four_frames(path, with_close);
+    std::filesystem::create_hard_link(path, folder / "before"); // tells a copy from the file itself
+    TrajectoryWriter again = TrajectoryWriter::go_on(path, test::small_topology(), 2);
+    again.write(test::small_snapshot(7));
+    again.close();
+    EXPECT_EQ(std::filesystem::hard_link_count(path) == 2, with_close);
+    EXPECT_FALSE(std::filesystem::exists(folder / "run.h5md.rebuilt"));
+    const TrajectoryReader reader(path);
+    EXPECT_EQ(reader.steps(), (std::vector<std::int64_t>{0, 1, 2, 7}));
+    EXPECT_EQ(reader.snapshot(1).velocity, test::small_snapshot(1).velocity);
+    EXPECT_EQ(reader.snapshot(2).grain_stress, test::small_snapshot(2).grain_stress);
+    EXPECT_EQ(reader.snapshot(3).box.h(), test::small_snapshot(7).box.h());
+  }
+}
+
+/// Writes frames until the disk is full; ends with 0 when that was told and the program could go on to its end.
+[[noreturn]] void write_until_full(const std::filesystem::path& path) {
+  std::string message;
+  {
+    TrajectoryWriter writer(path, test::small_topology(), {}, {true, 0});
+    const test::FileSizeLimit full(std::filesystem::file_size(path) + (2 << 20) + 30000);
+    message = test::message_of<std::runtime_error>([&] {
+      for (std::int64_t step = 0; step < 100000; ++step) {
+        writer.write(test::small_snapshot(step));
+      }
+    });
+  }
+  std::exit(message.find("run.h5md") != std::string::npos ? 0 : 1);
+}
+
+TEST(FullDisk, IsAMessageAndLeavesTheFramesBefore) {
+  const test::TemporaryFolder folder;
+  const pid_t child = fork();
+  if (child == 0) {
+    write_until_full(folder / "run.h5md");
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  const TrajectoryReader reader(folder / "run.h5md");
+  ASSERT_GT(reader.n_frames(), 10);
+  for (std::int64_t frame = 0; frame < reader.n_frames(); ++frame) {
+    ASSERT_EQ(reader.snapshot(frame).velocity, test::small_snapshot(frame).velocity);
   }
 }
 

@@ -160,6 +160,28 @@ TEST(LammpsDumpWriter, WritesBoundingLimitsAndGrains) {
   EXPECT_TRUE(frame.box.h().isApprox(tilted_state(7).box.h(), 1e-15));
 }
 
+TEST(LammpsDumpWriter, BoundsTiltsOfEverySign) {
+  // By the eight corners of the cell, without the format's formula.
+  for (const Vector3& tilts : {Vector3(-2, -3, -1), Vector3(2, 3, 1), Vector3(-2, 3, -1), Vector3(2, -3, 1)}) {
+    const TemporaryFolder folder;
+    Snapshot snapshot = tilted_state(0);
+    snapshot.box = Box(Vector3(0.5, -2, 1), Vector3(14, 13, 12), tilts);
+    LammpsDumpWriter(folder / "a.dump", DumpLayout::viewer).write(two_grains(), snapshot);
+    Vector3 low = snapshot.box.origin(), high = low;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3 x = snapshot.box.to_position(Vector3(corner & 1, corner >> 1 & 1, corner >> 2));
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+    const std::string wanted = fmt::format("{:g} {:g} {:g}\n{:g} {:g} {:g}\n{:g} {:g} {:g}\n", low[0], high[0],
+                                           tilts[0], low[1], high[1], tilts[1], low[2], high[2], tilts[2]);
+    EXPECT_NE(test::content_of(folder / "a.dump").find(wanted), std::string::npos) << wanted;
+    const Box read = read_lammps_dump(folder / "a.dump").box;
+    EXPECT_EQ(read.h(), snapshot.box.h());
+    EXPECT_EQ(read.origin(), snapshot.box.origin());
+  }
+}
+
 TEST(LammpsDumpWriter, WritesForcesWithAllDigits) {
   const TemporaryFolder folder;
   LammpsDumpWriter writer(folder / "f.dump", DumpLayout::forces);
