@@ -107,7 +107,7 @@ TEST(KilledRun, CopiesAFileThatWasNotClosedBeforeGoingOn) {
   std::string message;
   {
     TrajectoryWriter writer(path, test::small_topology(), {}, {true, 0});
-    const test::FileSizeLimit full(std::filesystem::file_size(path) + (2 << 20) + 30000);
+    const test::FileSizeLimit full(std::filesystem::file_size(path) + 520000);
     message = test::message_of<std::runtime_error>([&] {
       for (std::int64_t step = 0; step < 100000; ++step) {
         writer.write(test::small_snapshot(step));
