@@ -30,7 +30,7 @@ DensePacking make_dense_packing(int n_grains, int n_nodes, double alpha, int thr
   Insertion insertion;
   insertion.templates = {std::make_shared<const GrainTemplate>(TemplateCache().get(spec))};
   insertion.grains.assign(n_grains, Grain{.alpha = alpha});
-  insertion.packing_fraction = 0.45;
+  insertion.packing_fraction = 0.38;
 
   DensePacking dense;
   dense.pressure = target_pressure(alpha);

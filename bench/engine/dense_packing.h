@@ -7,7 +7,7 @@
 
 namespace boba::bench {
 
-/// A packing at P~ = 0.1, ready to be sheared: grains inserted at random at a packing fraction of 0.5 and compressed.
+/// A packing at P~ = 0.1, ready to be sheared: grains inserted at random at a packing fraction of 0.38 and compressed.
 struct DensePacking {
   std::unique_ptr<Stepper> stepper;
   double pressure = 0.0; ///< target, k/d

@@ -11,7 +11,10 @@ namespace boba {
 
 ContactList::ContactList(const LaneLayout& layout, double diameter, double skin)
     : layout_(layout), diameter_(diameter), skin_(skin), grids_(layout.n_grains()), bounds_(layout.n_grains()),
-      rows_(layout.n_grains()) {
+      neighbours_(layout.n_grains()), rows_(layout.n_grains()), moved_(layout.n_grains()), has_moved_(layout.n_grains()) {
+  for (int g = 0; g < layout.n_grains(); ++g) {
+    n_nodes_ += layout.n_nodes(g);
+  }
   if (layout.size() > std::numeric_limits<std::int32_t>::max()) {
     throw std::invalid_argument("contact list: the packing has more than 7e8 nodes, the most that one process handles");
   }
@@ -36,90 +39,76 @@ void ContactList::sort_into_grids(const LaneState& state) {
   }
 }
 
-void ContactList::collect_images(const std::vector<std::vector<NeighbourGrain>>& neighbours) {
+void ContactList::collect_images() {
   std::set<ImageVector> distinct = {ImageVector{}};
-  for (const std::vector<NeighbourGrain>& list : neighbours) {
+  for (const std::vector<NeighbourGrain>& list : neighbours_) {
     for (const NeighbourGrain& neighbour : list) {
-      distinct.insert(neighbour.image);
+      const ImageVector& n = neighbour.image;
+      distinct.insert(n);
+      distinct.insert({-n.a, -n.b, -n.c});
     }
   }
   images_.assign(distinct.begin(), distinct.end());
+}
+
+std::int32_t ContactList::image_index(const ImageVector& image) const {
+  return static_cast<std::int32_t>(std::lower_bound(images_.begin(), images_.end(), image) - images_.begin());
 }
 
 void ContactList::build(const LaneState& state, const Box& box,
                         const std::vector<const NetworkData*>& network_of_grain) {
   sort_into_grids(state);
   const int n_grains = layout_.n_grains();
-  const double reach = diameter_ + skin_;
-  std::vector<std::vector<NeighbourGrain>> neighbours(n_grains);
 #pragma omp parallel for schedule(dynamic, 8)
   for (int g = 0; g < n_grains; ++g) {
-    neighbours[g] = neighbour_grains(g, bounds_, box, reach);
+    // Nodes with a new reference may leave their grain's bounds by the margin.
+    neighbours_[g] = neighbour_grains(g, bounds_, box, diameter_ + skin_ + 2.0 * bounds_margin);
+    moved_[g].clear();
+    has_moved_[g].assign(layout_.n_nodes(g), 0);
   }
-  collect_images(neighbours);
+  collect_images();
+  origin_ = box.origin();
+  cell_ = box.h();
+  deformation_ = Matrix3::Identity();
 #pragma omp parallel for schedule(dynamic, 1)
   for (int g = 0; g < n_grains; ++g) {
-    build_rows(g, neighbours[g], box, *network_of_grain[g]);
+    build_rows(g, *network_of_grain[g]);
   }
-  origin_ = box.origin();
-  deformation_ = Matrix3::Identity();
+  n_moved_ = 0;
   bound_ = 0.0;
   built_ = true;
   ++n_builds_;
 }
 
-namespace {
-
-/// A row of the list before it is split into columns; sorted by the members in this order.
-struct SortedPair {
-  bool narrow;
-  std::int32_t own, other, image;
-  auto operator<=>(const SortedPair&) const = default;
-};
-
-/// True when own node i and node j displaced by n are bonded across the boundary of a periodic template.
-bool bonded_across(const NetworkData& network, const CandidatePair& pair, const ImageVector& n) {
-  const Eigen::Vector3i image(n.a, n.b, n.c);
-  return std::any_of(network.image_bonds().begin(), network.image_bonds().end(), [&](const ImageBond& bond) {
-    return (bond.i == pair.own && bond.j == pair.node && bond.n == image) ||
-           (bond.j == pair.own && bond.i == pair.node && bond.n == -image);
-  });
+ContactList::SortedPair ContactList::row_of(int grain, int node, int other, int other_node, std::int32_t image) const {
+  return {layout_.stride(other) == 1, node * 3 * layout_.stride(grain),
+          static_cast<std::int32_t>(layout_.index(other, other_node, 0)), image};
 }
 
-} // namespace
-
-void ContactList::build_rows(int grain, const std::vector<NeighbourGrain>& neighbours, const Box& box,
-                             const NetworkData& network) {
+void ContactList::build_rows(int grain, const NetworkData& network) {
   thread_local std::vector<CandidatePair> pairs;
+  thread_local std::vector<SortedPair> sorted;
+  const std::vector<NeighbourGrain>& neighbours = neighbours_[grain];
   pairs.clear();
-  std::vector<std::int32_t> image_index;
+  sorted.clear();
   for (int k = 0; k < static_cast<int>(neighbours.size()); ++k) {
     const ImageVector& n = neighbours[k].image;
-    const Vector3 shift = box.h() * Vector3(n.a, n.b, n.c);
-    add_pairs_between(grids_[grain], grids_[neighbours[k].other], shift, k, pairs);
-    image_index.push_back(
-        static_cast<std::int32_t>(std::lower_bound(images_.begin(), images_.end(), n) - images_.begin()));
+    add_pairs_between(grids_[grain], grids_[neighbours[k].other], cell_ * Vector3(n.a, n.b, n.c), k, pairs);
   }
   add_pairs_inside(grids_[grain], network, pairs);
-  const auto own_image =
-      static_cast<std::int32_t>(std::lower_bound(images_.begin(), images_.end(), ImageVector{}) - images_.begin());
-
-  thread_local std::vector<SortedPair> sorted;
-  sorted.clear();
-  sorted.reserve(pairs.size());
   for (const CandidatePair& pair : pairs) {
-    const bool own = pair.neighbour < 0;
-    const int other = own ? grain : neighbours[pair.neighbour].other;
-    if (!own && other == grain && !network.image_bonds().empty() &&
-        bonded_across(network, pair, neighbours[pair.neighbour].image)) {
-      continue;
+    const bool inside = pair.neighbour < 0;
+    const NeighbourGrain neighbour = inside ? NeighbourGrain{grain, {}} : neighbours[pair.neighbour];
+    const ImageVector& n = neighbour.image;
+    if (inside || neighbour.other != grain || !network.bonded_across(pair.own, pair.node, {n.a, n.b, n.c})) {
+      sorted.push_back(row_of(grain, pair.own, neighbour.other, pair.node, image_index(neighbour.image)));
     }
-    sorted.push_back({layout_.stride(other) == 1, pair.own * 3 * layout_.stride(grain),
-                      static_cast<std::int32_t>(layout_.index(other, pair.node, 0)),
-                      own ? own_image : image_index[pair.neighbour]});
   }
   std::sort(sorted.begin(), sorted.end());
+  set_rows(grain, sorted);
+}
 
+void ContactList::set_rows(int grain, const std::vector<SortedPair>& sorted) {
   Rows& rows = rows_[grain];
   rows.own.resize(sorted.size());
   rows.other.resize(sorted.size());
@@ -137,43 +126,6 @@ void ContactList::note_motion(const Matrix3& cell_map, double displacement) {
     deformation_ = cell_map * deformation_;
     bound_ = bound_ * (1.0 + (cell_map - Matrix3::Identity()).norm()) + displacement;
   }
-}
-
-double ContactList::largest_displacement(const LaneState& state) const {
-  const Matrix3& m = deformation_;
-  const Vector3 shift = origin_ - m * origin_;
-  const std::vector<Block>& blocks = layout_.blocks();
-  double largest2 = 0.0;
-#pragma omp parallel for schedule(dynamic, 1) reduction(max : largest2)
-  for (int b = 0; b < static_cast<int>(blocks.size()); ++b) {
-    const int stride = blocks[b].n_lanes;
-    for (std::int64_t node = 0; node < blocks[b].n_nodes; ++node) {
-      const double* x = state.x.data() + blocks[b].offset + 3 * node * stride;
-      const double* r = reference_.data() + blocks[b].offset + 3 * node * stride;
-      for (int l = 0; l < stride; ++l) {
-        const double rx = r[l], ry = r[l + stride], rz = r[l + 2 * stride];
-        const double dx = x[l] - (m(0, 0) * rx + m(0, 1) * ry + m(0, 2) * rz + shift[0]);
-        const double dy = x[l + stride] - (m(1, 1) * ry + m(1, 2) * rz + shift[1]);
-        const double dz = x[l + 2 * stride] - (m(2, 2) * rz + shift[2]);
-        largest2 = std::max(largest2, dx * dx + dy * dy + dz * dz);
-      }
-    }
-  }
-  return std::sqrt(largest2);
-}
-
-bool ContactList::expired(const LaneState& state) {
-  if (!built_) {
-    return true;
-  }
-  // A pair outside the list was at least diameter + skin apart; the cell's deformation shortens that by its smallest
-  // stretch (bounded from below by 1 - |F - 1|), and each of the two nodes may have come nearer by its displacement.
-  const double stretch = 1.0 - (deformation_ - Matrix3::Identity()).norm();
-  const double allowed = 0.5 * (stretch * (diameter_ + skin_) - diameter_);
-  if (bound_ > allowed && allowed > 0.0) {
-    bound_ = largest_displacement(state);
-  }
-  return !(bound_ <= allowed);
 }
 
 kernels::ContactRows ContactList::rows(int grain, int other_stride) const {

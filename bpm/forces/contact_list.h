@@ -10,7 +10,12 @@
 
 namespace boba {
 
-/// Candidate contacts of every grain, valid until some node has moved half the skin relative to the cell's affine motion.
+/// Candidate contacts of every grain.
+///
+/// Each node has a reference position, co-moving with the cell since the list was built, and all pairs whose references are
+/// closer than diameter + skin are listed. A node that leaves its reference by nearly half the skin gets a new one,
+/// and its pairs are added: a few fast nodes cost a few look-ups. Only when many nodes have done so, or the cell
+/// has deformed by several per cent, everything is built anew.
 ///
 /// The list of a grain is sorted by own node, then by the other node and its image (partners in full blocks before those in
 /// blocks of one lane): an order that follows from the state alone.
@@ -21,11 +26,11 @@ class ContactList {
 public:
   ContactList(const LaneLayout& layout, double diameter, double skin);
 
-  void build(const LaneState& state, const Box& box, const std::vector<const NetworkData*>& network_of_grain);
+  /// Makes sure that no contact of the present state is missing. `network_of_grain` as given at the first call.
+  void update(const LaneState& state, const Box& box, const std::vector<const NetworkData*>& network_of_grain);
   /// Tells the list that the cell was mapped by `cell_map` and that no node moved farther than `displacement` beyond that.
   void note_motion(const Matrix3& cell_map, double displacement);
-  /// True when the list may miss a contact. Measures the true displacements only when the running bound says it must.
-  bool expired(const LaneState& state);
+  /// The cell's vectors or the state changed in a way that note_motion was not told of.
   void invalidate() { built_ = false; }
 
   /// Candidates of one grain whose other node lives in a block of `other_stride` lanes (block_lanes or 1).
@@ -34,31 +39,67 @@ public:
   const std::vector<ImageVector>& images() const { return images_; }
   std::int64_t n_candidates() const;
   std::int64_t n_builds() const { return n_builds_; }
+  std::int64_t n_refreshed_nodes() const { return n_refreshed_; }
   std::size_t bytes() const;
 
 private:
+  /// How far a node with a new reference may be outside its grain's bounds at the build before all is built anew, d.
+  static constexpr double bounds_margin = 0.5;
+
   struct Rows {
     std::vector<std::int32_t> own, other, image;
     std::int64_t n_wide = 0; ///< the first n_wide candidates have their other node in a full block
   };
+  /// A row of the list before it is split into columns; sorted by the members in this order.
+  struct SortedPair {
+    bool narrow;
+    std::int32_t own, other, image;
+    auto operator<=>(const SortedPair&) const = default;
+  };
+  struct MovedNode {
+    std::int32_t grain, node;
+  };
+  /// Nodes farther than a threshold from their reference, and the largest distance of the others.
+  struct Displacements {
+    std::vector<MovedNode> moved;
+    double largest_rest = 0.0;
+  };
+
+  void build(const LaneState& state, const Box& box, const std::vector<const NetworkData*>& network_of_grain);
   void sort_into_grids(const LaneState& state);
-  void collect_images(const std::vector<std::vector<NeighbourGrain>>& neighbours);
-  void build_rows(int grain, const std::vector<NeighbourGrain>& neighbours, const Box& box,
-                  const NetworkData& network);
-  double largest_displacement(const LaneState& state) const;
+  void collect_images();
+  std::int32_t image_index(const ImageVector& image) const;
+  void build_rows(int grain, const NetworkData& network);
+  SortedPair row_of(int grain, int node, int other, int other_node, std::int32_t image) const;
+  void set_rows(int grain, const std::vector<SortedPair>& sorted);
+
+  double allowed_displacement() const;
+  Displacements measure(const LaneState& state, double threshold) const;
+  bool refresh(const std::vector<MovedNode>& moved, const LaneState& state,
+               const std::vector<const NetworkData*>& network_of_grain);
+  bool set_reference(const MovedNode& moved, const LaneState& state);
+  Vector3 reference_of(int grain, int node) const;
+  void find_pairs(const MovedNode& moved, const NetworkData& network,
+                  std::vector<std::vector<SortedPair>>& found) const;
+  void merge_rows(int grain, std::vector<SortedPair>& added);
 
   const LaneLayout& layout_;
   double diameter_, skin_;
   bool built_ = false;
   Vector3 origin_ = Vector3::Zero();
-  Matrix3 deformation_ = Matrix3::Identity(); ///< of the cell since the list was built
-  double bound_ = 0.0;                        ///< on any node's displacement relative to that, d
-  AlignedVector reference_;                   ///< positions when the list was built, lane layout
-  std::vector<GrainGrid> grids_;
+  Matrix3 cell_ = Matrix3::Identity();        ///< the cell matrix when the list was built
+  Matrix3 deformation_ = Matrix3::Identity(); ///< of the cell since then
+  double bound_ = 0.0;                        ///< on any node's distance from its reference, d
+  AlignedVector reference_;                   ///< in the frame of the cell when the list was built, lane layout
+  std::vector<GrainGrid> grids_; ///< over the references at the build
   std::vector<Bounds> bounds_;
-  std::vector<ImageVector> images_; ///< sorted
+  std::vector<std::vector<NeighbourGrain>> neighbours_;
+  std::vector<ImageVector> images_; ///< sorted; with n also -n
   std::vector<Rows> rows_;
-  std::int64_t n_builds_ = 0;
+  std::vector<std::vector<std::int32_t>> moved_;     ///< per grain: nodes whose reference is not the grid's
+  std::vector<std::vector<std::uint8_t>> has_moved_; ///< per grain and node
+  std::int64_t n_moved_ = 0, n_nodes_ = 0;
+  std::int64_t n_builds_ = 0, n_refreshed_ = 0;
 };
 
 } // namespace boba

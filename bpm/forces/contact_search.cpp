@@ -165,4 +165,22 @@ void add_pairs_inside(const GrainGrid& own, const NetworkData& network, std::vec
   }
 }
 
+void add_nodes_near(const GrainGrid& grid, const Vector3& x, std::vector<std::int32_t>& nodes) {
+  if (!grid.near(x)) {
+    return;
+  }
+  const Vector3 margin = Vector3::Constant(grid.reach());
+  const auto find = kernels::best_table().near_places;
+  for_each_row(grid, cells_around(grid, x - margin, x + margin), [&](std::int32_t begin, std::int32_t end) {
+    const std::size_t before = nodes.size();
+    nodes.resize(before + (end - begin) + 8);
+    const std::int32_t n =
+        find(grid.columns(), begin, end, x.data(), grid.reach() * grid.reach(), nodes.data() + before);
+    nodes.resize(before + n);
+    for (std::size_t k = before; k < nodes.size(); ++k) {
+      nodes[k] = grid.node(nodes[k]);
+    }
+  });
+}
+
 } // namespace boba

@@ -117,9 +117,7 @@ void ForceField::bonds_of(const Block& block, LaneState& state, const Box& box, 
 
 void ForceField::evaluate(LaneState& state, const Box& box, const Evaluation& what) {
   const double start = omp_get_wtime();
-  if (contact_list_.expired(state)) {
-    contact_list_.build(state, box, network_of_grain_);
-  }
+  contact_list_.update(state, box, network_of_grain_);
   const double searched = omp_get_wtime();
   const ImageTables images(contact_list_.images(), box, what.residual_rate);
   const kernels::ContactParameters contact_parameters = {material_.k,           material_.k3,        material_.gamma,

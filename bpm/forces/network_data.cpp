@@ -44,4 +44,10 @@ NetworkData::NetworkData(const GrainTemplate& grain) : n_nodes_(grain.n_nodes())
   }
 }
 
+bool NetworkData::bonded_across(int i, int j, const Eigen::Vector3i& n) const {
+  return std::any_of(image_bonds_.begin(), image_bonds_.end(), [&](const ImageBond& bond) {
+    return (bond.i == i && bond.j == j && bond.n == n) || (bond.j == i && bond.i == j && bond.n == -n);
+  });
+}
+
 } // namespace boba

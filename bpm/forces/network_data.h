@@ -25,6 +25,8 @@ public:
   int n_nodes() const { return n_nodes_; }
   std::int64_t n_bonds() const { return static_cast<std::int64_t>(records_.size() + image_bonds_.size()); }
   const std::vector<ImageBond>& image_bonds() const { return image_bonds_; }
+  /// True when node i and node j displaced by h n are bonded across the boundary of a periodic template.
+  bool bonded_across(int i, int j, const Eigen::Vector3i& n) const;
   /// Nodes bonded to node i within the same image, ascending.
   const std::int32_t* partners_begin(int i) const { return partners_.data() + first_partner_[i]; }
   const std::int32_t* partners_end(int i) const { return partners_.data() + first_partner_[i + 1]; }
