@@ -2,7 +2,8 @@
 # One way to declare a library, a program and a test, so that every folder's file is a list of sources.
 
 add_library(boba_warnings INTERFACE)
-target_compile_options(boba_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+target_compile_options(boba_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+  -Wno-missing-field-initializers) # members left out of a designated initialiser have defaults
 
 # boba_add_library(NAME [SOURCES ...] [LIBRARIES ...]): target boba_NAME with the alias boba::NAME.
 # Without sources it is a header-only (interface) library.
