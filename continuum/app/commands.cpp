@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "continuum/app/commands.h"
 
+#include "continuum/app/octant_run.h"
 #include "continuum/app/report.h"
 #include "continuum/app/summary.h"
 #include "continuum/app/uniaxial_file.h"
@@ -23,7 +24,8 @@ constexpr double largest_linear_strain = 0.1;
 struct Options {
   double radius = 1, height = 2, young = 1, poisson = 0.25, slab = 0;
   double c1 = 0, c3 = 0;
-  double elements_across = 48;
+  std::optional<double> elements_across;
+  unsigned dimension = 2, refinements = 2;
   std::optional<double> corner;
   unsigned degree = 2;
   std::vector<double> approaches, strains;
@@ -44,7 +46,7 @@ public:
         ->required();
     sphere_->add_option("--against", options_.against, "plates, or sphere: two equal spheres, approach of the centres")
         ->check(CLI::IsMember({"plates", "sphere"}));
-    sphere_->add_option("--elements-across", options_.elements_across, "elements across the contact radius, >= 8");
+    sphere_->add_option("--elements-across", options_.elements_across, "elements across the contact radius, >= 8 (48; 10 in three dimensions)");
     cylinder_ = app.add_subcommand("cylinder", "a cylinder between two plates, held or sliding");
     common(*cylinder_);
     cylinder_->add_option("--height", options_.height, "height between the held ends")->required();
@@ -80,6 +82,10 @@ private:
     app.add_option("--fit", options_.curve,
                    "foam: fit to a uniaxial test, CSV of compressive strain, stress, lateral strain");
     app.add_option("--fit-terms", options_.foam_terms, "foam: terms of the fit, 1 or 2");
+    app.add_option("--dimension", options_.dimension, "2: axisymmetric meridian; 3: octant, under MPI")
+        ->check(CLI::IsMember({2, 3}));
+    app.add_option("--refinements", options_.refinements, "dimension 3: even refinements of the coarse octant")
+        ->check(CLI::Range(0, 8));
     app.add_option("--degree", options_.degree, "degree of the displacement, 1 to 4");
     app.add_option("--formulation", options_.formulation, "automatic, displacement or projected")
         ->check(CLI::IsMember({"automatic", "displacement", "projected"}));
@@ -119,7 +125,7 @@ private:
   json parameters(const std::shared_ptr<const HyperelasticLaw>& law) const {
     json result = {{"radius", options_.radius},       {"young", options_.young},   {"poisson", options_.poisson},
                    {"interface", options_.interface}, {"kinematics", options_.kinematics}, {"degree", options_.degree},
-                   {"dimension", 2},                  {"formulation", options_.formulation}};
+                   {"dimension", options_.dimension},                  {"formulation", options_.formulation}};
     if (options_.interface == "compliant") {
       result["c1"] = options_.c1;
       result["c3"] = options_.c3;
@@ -135,6 +141,26 @@ private:
     return result;
   }
 
+  template <class Problem> int run_in_three_dimensions(const Problem& problem, double elements_across) {
+    const MpiSession session;
+    if (session.rank() == 0) {
+      prepare_folder(options_.output, options_.force);
+    }
+    json chosen = parameters(problem.finite_law);
+    chosen["refinements"] = options_.refinements;
+    chosen["ranks"] = session.size();
+    const OctantChoice choice{options_.degree, options_.refinements, elements_across,
+                              options_.no_fields ? "" : options_.output};
+    const json document = run_octant(problem, choice, chosen);
+    if (session.rank() == 0) {
+      write_summary(options_.output, document);
+      for (const auto& load : document.at("loads")) {
+        fmt::print("{}\n", load.dump());
+      }
+    }
+    return 0;
+  }
+
   int run_sphere(std::ostream& warnings) {
     SphereProblem problem;
     problem.radius = options_.radius;
@@ -143,8 +169,11 @@ private:
     problem.interface = interface();
     problem.finite_law = finite_law(warnings);
     problem.discretisation = discretisation();
-    problem.elements_across = options_.elements_across;
+    problem.elements_across = options_.elements_across.value_or(options_.dimension == 2 ? 48 : 10);
     check(problem);
+    if (options_.dimension == 3) {
+      return run_in_three_dimensions(problem, problem.elements_across);
+    }
     prepare_folder(options_.output, options_.force);
     const auto loads = solve(problem);
     for (const auto& load : loads) {
@@ -157,7 +186,7 @@ private:
     }
     json chosen = parameters(problem.finite_law);
     chosen["against"] = options_.against;
-    chosen["elements_across"] = options_.elements_across;
+    chosen["elements_across"] = problem.elements_across;
     write_summary(options_.output, report(loads, problem, chosen));
     if (!options_.no_fields) {
       write_fields(options_.output, loads, problem);
@@ -188,6 +217,9 @@ private:
     }
     if (!(problem.mesh.corner > 0 && problem.mesh.corner <= 1)) {
       throw std::invalid_argument(fmt::format("corner = {} is not allowed: it must lie in (0, 1]", problem.mesh.corner));
+    }
+    if (options_.dimension == 3) {
+      return run_in_three_dimensions(problem, 0);
     }
     prepare_folder(options_.output, options_.force);
     const auto result = solve(problem);

@@ -12,13 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-json header(const char* problem, json parameters) {
-  return {{"schema", "boba-continuum-summary"},
-          {"schema_version", summary_schema_version},
-          {"problem", problem},
-          {"parameters", std::move(parameters)}};
-}
-
 json profile_of(const std::vector<FieldPoint>& points) {
   json r = json::array(), z = json::array(), u_r = json::array(), u_z = json::array();
   for (const auto& point : points) {
@@ -47,8 +40,15 @@ void write_load(const std::filesystem::path& folder, std::size_t i, double value
 
 } // namespace
 
+json summary_header(const char* problem, json parameters) {
+  return {{"schema", "boba-continuum-summary"},
+          {"schema_version", summary_schema_version},
+          {"problem", problem},
+          {"parameters", std::move(parameters)}};
+}
+
 json report(const std::vector<SphereLoad>& loads, const SphereProblem& problem, json parameters) {
-  json document = header("sphere", std::move(parameters));
+  json document = summary_header("sphere", std::move(parameters));
   for (const auto& load : loads) {
     document["loads"].push_back(
         {{"approach", load.approach},
@@ -78,7 +78,7 @@ json report(const std::vector<SphereLoad>& loads, const SphereProblem& problem, 
 }
 
 json report(const CylinderResult& result, const CylinderProblem&, json parameters) {
-  json document = header("cylinder", std::move(parameters));
+  json document = summary_header("cylinder", std::move(parameters));
   for (const auto& load : result.loads) {
     document["loads"].push_back({{"strain", load.strain},
                                  {"force", load.force},

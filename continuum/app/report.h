@@ -9,6 +9,9 @@
 
 namespace boba::continuum {
 
+/// The head of a summary: schema, version, problem and parameters, without loads.
+nlohmann::json summary_header(const char* problem, nlohmann::json parameters);
+
 /// The summary of a run; parameters: what the command line chose.
 nlohmann::json report(const std::vector<SphereLoad>& loads, const SphereProblem& problem, nlohmann::json parameters);
 nlohmann::json report(const CylinderResult& result, const CylinderProblem& problem, nlohmann::json parameters);

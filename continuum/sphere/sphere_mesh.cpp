@@ -32,17 +32,17 @@ double distance_to_surface(const dealii::Point<2>& x, double half_cell, double r
   return std::max(0., std::hypot(x[0] - r, x[1] - std::sqrt(radius * radius - r * r)) - half_cell);
 }
 
-/// Wanted element size at x: the nearest point of the contact edges sets it, and it grows away from there.
-double wanted_size(const dealii::Point<2>& x, double half_cell, double radius, const SphereMeshSize& size) {
-  const double edge = std::clamp(x[0], size.lowest_edge, size.highest_edge);
-  const double inside = std::min(x[0], size.lowest_edge);
+} // namespace
+
+double wanted_size(double r, double z, double half_cell, double radius, const SphereMeshSize& size) {
+  const dealii::Point<2> x(r, z);
+  const double edge = std::clamp(r, size.lowest_edge, size.highest_edge);
+  const double inside = std::min(r, size.lowest_edge);
   const double to_edge = distance_to_surface(x, half_cell, radius, edge);
   const double to_inside = distance_to_surface(x, half_cell, radius, inside);
   return std::min({edge / size.elements_across + size.growth * to_edge,
                    size.lowest_edge / size.elements_inside + size.growth * to_inside, size.coarsest * radius});
 }
-
-} // namespace
 
 MeridianMesh sphere_mesh(double radius, const SphereMeshSize& size) {
   auto mesh = coarse_disk(radius);
@@ -50,7 +50,7 @@ MeridianMesh sphere_mesh(double radius, const SphereMeshSize& size) {
     refined = false;
     for (const auto& cell : mesh->active_cell_iterators()) {
       const double edge = cell->diameter() / std::sqrt(2.);
-      if (edge > wanted_size(cell->center(), cell->diameter() / 2, radius, size)) {
+      if (edge > wanted_size(cell->center()[0], cell->center()[1], cell->diameter() / 2, radius, size)) {
         cell->set_refine_flag();
         refined = true;
       }

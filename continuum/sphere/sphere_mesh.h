@@ -19,6 +19,9 @@ struct SphereMeshSize {
   double coarsest = 0.25;
 };
 
+/// Wanted element size at the point (r, z) of a cell whose half diagonal is half_cell.
+double wanted_size(double r, double z, double half_cell, double radius, const SphereMeshSize& size);
+
 /// Quarter disk of radius R; the curved boundary is plate_side (all of it: the free surface too).
 MeridianMesh sphere_mesh(double radius, const SphereMeshSize& size);
 
