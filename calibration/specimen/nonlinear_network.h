@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/grain/grain_template.h"
+#include "calibration/network/petsc_handle.h"
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace boba::calibration {
+
+using Vector3 = Eigen::Vector3d;
+using Matrix3 = Eigen::Matrix3d;
+
+/// A network at finite strain under the engine's own bond law (bpm/laws/bond.h) at rest, k = 1.
+///
+/// Positions of the nodes and, for a periodic network, the cell matrix h = F diag(period); some nodes may be held.
+/// `relax` finds the positions at which no free node feels a force: PETSc SNES with the analytic Jacobian. Contacts are
+/// no part of the model; a state in which unbonded nodes come closer than d is refused.
+class NonlinearNetwork {
+public:
+  NonlinearNetwork(const GrainTemplate& grain, double alpha);
+
+  int n_nodes() const { return static_cast<int>(position_.size()); }
+  const std::vector<Vector3>& position() const { return position_; }
+  const std::vector<Vector3>& reference() const { return reference_; }
+  /// Moves the cell from its present deformation to F, all nodes with it.
+  void deform_cell(const Matrix3& deformation);
+  void move(int node, const Vector3& displacement) { position_[node] += displacement; }
+  void hold(const std::vector<int>& nodes);
+
+  /// Forces of the bonds on every node at the given positions (k d).
+  std::vector<Vector3> forces(const std::vector<Vector3>& position) const;
+  /// Derivative of the forces along a displacement.
+  std::vector<Vector3> force_derivative(const std::vector<Vector3>& displacement) const;
+  /// Cauchy stress -(1/Vol) sum f r e e^T over the volume of the deformed cell, tension positive (k/d).
+  Matrix3 stress() const;
+
+  /// Unbonded pairs closer than d at present.
+  int n_contacts() const;
+
+  /// \throws std::runtime_error (with the residual history's end) when Newton's method does not converge.
+  void relax(double tolerance = 1e-8);
+
+private:
+  struct Link {
+    int i, j;
+    Vector3 cells; // image of j in cell vectors
+    double r0, inverse_volume;
+  };
+  struct State { // of each bond at the positions of the last `update`
+    Vector3 e;
+    double r, force;
+    double many_body; // alpha q^(-2/3) / (V0_i + V0_j); 0 for a contact
+    double spring;    // -df/dr at constant volumes
+  };
+  std::vector<State> states(const std::vector<Vector3>& position) const;
+  void fill_pair_matrix(Mat matrix) const;
+  /// Unbonded pairs closer than d + margin as links without reference length, appended behind the bonds.
+  void find_contacts();
+  void relax_once(double tolerance);
+  Matrix3 cell() const;
+  friend struct SnesGlue;
+
+  double alpha_;
+  std::vector<Vector3> reference_, position_;
+  std::optional<Vector3> period_;
+  Matrix3 deformation_ = Matrix3::Identity();
+  std::vector<Link> links_; // n_bonds_ bonds sorted by (i, j), then the pairs that may touch
+  std::size_t n_bonds_ = 0;
+  std::vector<double> volume0_;
+  std::vector<char> held_;
+  std::vector<State> linearised_; // where the Jacobian was taken
+};
+
+} // namespace boba::calibration
