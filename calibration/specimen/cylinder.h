@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/grain/grain_template.h"
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace boba::calibration {
+
+/// A cylinder along z squeezed between held end slabs.
+struct CylinderTest {
+  double alpha = 0.0;           ///< k d
+  double strain = 1e-3;         ///< shortening over the free height between the slabs
+  double clamp_thickness = 2.0; ///< d; nodes this close to the lowest and to the highest node are held
+};
+
+/// What it says about the solid. Strains are those of the middle third of the free height; stress is the axial force
+/// over an area, and which area is a choice.
+struct CylinderResult {
+  double axial_strain = 0.0;   ///< slope of u_z over z, negative in compression
+  double lateral_strain = 0.0; ///< sum(u.r) / sum(r.r) over the nodes' positions r across the axis
+  double force = 0.0;          ///< k d, positive when the ends are pushed apart
+  double free_height = 0.0;    ///< d
+  double density_area = 0.0;   ///< d^2: nodes in the middle third / (density times its height), the rule used for E
+  double centre_radius = 0.0;  ///< d: largest distance of a node centre from the axis, in the middle third
+
+  double poisson() const { return -lateral_strain / axial_strain; }
+  double young() const { return young_of(density_area); }
+  double young_of(double area) const { return -force / area / axial_strain; }
+};
+
+/// Relaxes the squeezed cylinder by the static solver. `density` is that of the bulk the cylinder was cut from (d^-3).
+/// \throws std::invalid_argument when nothing is left between the slabs; std::runtime_error when the solve fails.
+CylinderResult static_cylinder(const GrainTemplate& cylinder, const CylinderTest& test, double density);
+
+/// The same by the engine: the ends move at `velocity` each (d/tau), then the cylinder rests for `settle` (tau).
+CylinderResult dynamic_cylinder(const GrainTemplate& cylinder, const CylinderTest& test, double density,
+                                double velocity = 1e-3, double settle = 400.0);
+
+} // namespace boba::calibration
