@@ -17,5 +17,7 @@ Command add_table(CLI::App& app);
 Command add_make_table(CLI::App& app);
 Command add_find(CLI::App& app);
 Command add_limit(CLI::App& app);
+Command add_strain(CLI::App& app);
+Command add_specimen(CLI::App& app);
 
 } // namespace boba::calibration

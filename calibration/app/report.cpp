@@ -94,7 +94,7 @@ void write_text(const fs::path& file, const std::string& text) {
 
 std::string table_csv(const Sweep& sweep) {
   std::string text("alpha,young,young_error,poisson,poisson_error,bulk,bulk_error,shear,shear_error,anisotropy,"
-                     "published_young,published_poisson\n");
+                   "published_young,published_poisson\n");
   for (const SweepRow& row : sweep.rows) {
     const Estimate young = row.young(), poisson = row.poisson(), bulk = row.bulk(), shear = row.shear();
     const auto pair = published_pair(row.alpha);
