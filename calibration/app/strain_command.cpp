@@ -21,6 +21,7 @@ struct StrainOptions {
   double largest = 0.2;
   int points = 8;
   int terms = 2;
+  bool fit_tension = false;
   std::string output;
   bool force = false;
 };
@@ -52,15 +53,28 @@ UniaxialPoint average(const std::vector<std::vector<UniaxialPoint>>& curves, std
   return mean;
 }
 
-/// E = dP/dl and nu = -d ln(lateral) / d ln(axial), by differences of neighbouring points.
+/// Derivative at point n of the parabola through it and its neighbours (at the ends, of the line).
+template <class X, class Y> double slope_at(const std::vector<UniaxialPoint>& points, std::size_t n, X&& x, Y&& y) {
+  const auto line = [&](std::size_t a, std::size_t b) {
+    return (y(points[b]) - y(points[a])) / (x(points[b]) - x(points[a]));
+  };
+  if (n == 0 || n + 1 == points.size()) {
+    return n == 0 ? line(0, 1) : line(n - 1, n);
+  }
+  const double left = x(points[n]) - x(points[n - 1]), right = x(points[n + 1]) - x(points[n]);
+  return (right * line(n - 1, n) + left * line(n, n + 1)) / (left + right);
+}
+
+/// E = dP/dl and nu = -d ln(lateral) / d ln(axial).
 struct Tangent {
   double young, poisson;
 };
 Tangent tangent(const std::vector<UniaxialPoint>& points, std::size_t n) {
-  const UniaxialPoint& a = points[n == 0 ? 0 : n - 1];
-  const UniaxialPoint& b = points[n + 1 == points.size() ? n : n + 1];
-  return {(b.stress - a.stress) / (b.axial_stretch - a.axial_stretch),
-          -std::log(b.lateral_stretch / a.lateral_stretch) / std::log(b.axial_stretch / a.axial_stretch)};
+  return {slope_at(
+              points, n, [](const auto& p) { return p.axial_stretch; }, [](const auto& p) { return p.stress; }),
+          -slope_at(
+              points, n, [](const auto& p) { return std::log(p.axial_stretch); },
+              [](const auto& p) { return std::log(p.lateral_stretch); })};
 }
 
 std::string curve_csv(const std::vector<UniaxialPoint>& points) {
@@ -128,7 +142,10 @@ int strain(const StrainOptions& options) {
     fmt::print("{:>9.4f} {:>11.6f} {:>11.6f} {:>9.4f} {:>9.4f}\n", strains[n], points[n].stress,
                points[n].lateral_stretch - 1.0, slope.young, slope.poisson);
   }
-  const FoamFit fit = fit_foam(points, options.terms);
+  std::vector<UniaxialPoint> fitted;
+  std::copy_if(points.begin(), points.end(), std::back_inserter(fitted),
+               [&](const UniaxialPoint& point) { return options.fit_tension || point.axial_stretch < 1.0; });
+  const FoamFit fit = fit_foam(fitted, options.terms);
   for (const FoamTerm& term : fit.terms) {
     fmt::print("foam term: mu = {:.6f} k/d, exponent = {:.5f}, nu = {:.5f}\n", term.mu, term.exponent, term.poisson);
   }
@@ -150,6 +167,7 @@ Command add_strain(CLI::App& app) {
   command->add_option("--strain", options->largest, "Largest strain in compression and tension")->capture_default_str();
   command->add_option("--points", options->points, "Strains on each side")->capture_default_str();
   command->add_option("--terms", options->terms, "Terms of the foam law, 1 or 2")->capture_default_str();
+  command->add_flag("--fit-tension", options->fit_tension, "Fit the law to tension too, not to compression alone");
   command->add_option("--output", options->output, "Directory for curve.csv, compression.csv, foam.json and curve.png");
   command->add_flag("--force", options->force, "Write into a directory that holds files");
   options->box.add_to(*command);

@@ -26,11 +26,11 @@ double stress(const std::vector<FoamTerm>& terms, double stretch, double log_vol
   return sum;
 }
 
-/// Parameters a term: mu / scale, exponent, and t with nu = -1/4 + 3/4 tanh t, so that every t is allowed.
+/// Parameters a term: ln(mu / scale), exponent, and t with nu = -1/4 + 3/4 tanh t, so that every value is allowed.
 std::vector<FoamTerm> terms_of(const Eigen::VectorXd& x, double scale) {
   std::vector<FoamTerm> terms;
   for (Eigen::Index p = 0; p + 2 < x.size(); p += 3) {
-    terms.push_back({scale * x[p], x[p + 1], -0.25 + 0.7499 * std::tanh(x[p + 2])});
+    terms.push_back({scale * std::exp(x[p]), x[p + 1], -0.25 + 0.7499 * std::tanh(x[p + 2])});
   }
   return terms;
 }
@@ -96,7 +96,7 @@ FoamFit fit_foam(const std::vector<UniaxialPoint>& points, int n_terms) {
   for (const auto& exponents : starts) {
     Eigen::VectorXd x(3 * n_terms);
     for (int k = 0; k < n_terms; ++k) {
-      x.segment<3>(3 * k) << 0.5 / (1.0 + poisson) / n_terms, exponents[k], std::atanh((poisson + 0.25) / 0.75);
+      x.segment<3>(3 * k) << std::log(0.5 / (1.0 + poisson) / n_terms), exponents[k], std::atanh((poisson + 0.25) / 0.75);
     }
     Eigen::NumericalDiff<Misfit, Eigen::Central> derivative(misfit);
     Eigen::LevenbergMarquardt<Eigen::NumericalDiff<Misfit, Eigen::Central>> search(derivative);
