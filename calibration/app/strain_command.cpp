@@ -53,16 +53,13 @@ UniaxialPoint average(const std::vector<std::vector<UniaxialPoint>>& curves, std
   return mean;
 }
 
-/// Derivative at point n of the parabola through it and its neighbours (at the ends, of the line).
+/// Derivative at point n of the parabola through it and its two neighbours (at the ends, its two nearest points).
 template <class X, class Y> double slope_at(const std::vector<UniaxialPoint>& points, std::size_t n, X&& x, Y&& y) {
-  const auto line = [&](std::size_t a, std::size_t b) {
-    return (y(points[b]) - y(points[a])) / (x(points[b]) - x(points[a]));
-  };
-  if (n == 0 || n + 1 == points.size()) {
-    return n == 0 ? line(0, 1) : line(n - 1, n);
-  }
-  const double left = x(points[n]) - x(points[n - 1]), right = x(points[n + 1]) - x(points[n]);
-  return (right * line(n - 1, n) + left * line(n, n + 1)) / (left + right);
+  const std::size_t m = std::clamp<std::size_t>(n, 1, points.size() - 2);
+  const double left = x(points[m]) - x(points[m - 1]), right = x(points[m + 1]) - x(points[m]);
+  const double before = (y(points[m]) - y(points[m - 1])) / left, after = (y(points[m + 1]) - y(points[m])) / right;
+  const double curvature = (after - before) / (left + right); // half the second derivative
+  return before + curvature * left + 2.0 * curvature * (x(points[n]) - x(points[m]));
 }
 
 /// E = dP/dl and nu = -d ln(lateral) / d ln(axial).

@@ -16,6 +16,11 @@ GrainTemplate test_box(int n_nodes, std::uint64_t seed) {
       .get({.shape = TemplateSpec::Shape::periodic_box, .size = {1, 1, 1}, .n_nodes = n_nodes, .seed = seed});
 }
 
+GrainTemplate test_cylinder(double radius, double height) {
+  return TemplateCache(BOBA_TEST_CACHE)
+      .get({.shape = TemplateSpec::Shape::cylinder, .radius = radius, .height = height});
+}
+
 GrainTemplate fcc_box(int m) {
   const double half_cell = std::sqrt(0.5);
   GrainTemplate box;
