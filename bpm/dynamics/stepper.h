@@ -70,7 +70,7 @@ public:
   double time() const { return static_cast<double>(step_) * options_.dt; }
   double strain() const { return strain_; }
   double node_diameter() const { return material_.diameter; }
-  ForceField::Stretch largest_stretch() const { return forces_.largest_stretch(state_); }
+  ForceField::Stretch largest_stretch() const { return forces_.largest_stretch(state_, box_); }
   std::vector<Clamp>& clamps() { return clamps_; }
   void set_clamps(std::vector<Clamp> clamps) { clamps_ = std::move(clamps); }
   /// All nodes with z in [low, high] as a clamp at rest.

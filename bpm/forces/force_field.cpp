@@ -2,7 +2,6 @@
 #include "bpm/forces/force_field.h"
 
 #include "bpm/forces/image_bonds.h"
-#include "bpm/laws/bond.h"
 
 #include <omp.h>
 
@@ -185,60 +184,6 @@ void ForceField::reduce_contacts() {
   }
   results_.contacts.n_touching = sides / 2;
   results_.contacts.largest_overlap = smallest_r2 < no_contact_r2 ? material_.diameter - std::sqrt(smallest_r2) : 0.0;
-}
-
-namespace {
-
-Vector3 node_at(const LaneState& state, const LaneLayout& layout, int grain, int node) {
-  const std::int64_t at = layout.index(grain, node, 0), stride = layout.stride(grain);
-  return {state.x[at], state.x[at + stride], state.x[at + 2 * stride]};
-}
-
-} // namespace
-
-double ForceField::bond_energy(const LaneState& state, const Box& box) const {
-  std::vector<double> energy(layout_.n_grains(), 0.0);
-#pragma omp parallel for schedule(dynamic, 8)
-  for (int g = 0; g < layout_.n_grains(); ++g) {
-    const kernels::Network network = network_of_grain_[g]->view();
-    for (int i = 0; i < network.n_nodes; ++i) {
-      const Vector3 xi = node_at(state, layout_, g, i);
-      for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
-        const double r = (xi - node_at(state, layout_, g, static_cast<int>(network.bonds[b].other))).norm();
-        energy[g] += boba::bond_energy(material_.k, r, network.bonds[b].r0);
-      }
-    }
-    for (const ImageBond& bond : network_of_grain_[g]->image_bonds()) {
-      const Vector3 d = node_at(state, layout_, g, bond.i) - node_at(state, layout_, g, bond.j) - box.h() * bond.n.cast<double>();
-      energy[g] += boba::bond_energy(material_.k, d.norm(), bond.r0);
-    }
-  }
-  double total = 0.0;
-  for (const double e : energy) {
-    total += e;
-  }
-  return total;
-}
-
-ForceField::Stretch ForceField::largest_stretch(const LaneState& state) const {
-  std::vector<Stretch> largest(layout_.n_grains());
-#pragma omp parallel for schedule(dynamic, 8)
-  for (int g = 0; g < layout_.n_grains(); ++g) {
-    const kernels::Network network = network_of_grain_[g]->view();
-    for (int i = 0; i < network.n_nodes; ++i) {
-      const Vector3 xi = node_at(state, layout_, g, i);
-      for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
-        const Vector3 xj = node_at(state, layout_, g, static_cast<int>(network.bonds[b].other));
-        const double ratio = (xi - xj).norm() * network.bonds[b].inverse_r0;
-        if (!(ratio <= largest[g].ratio)) { // also true for NaN
-          largest[g] = {ratio, g, i};
-        }
-      }
-    }
-  }
-  return *std::max_element(largest.begin(), largest.end(), [](const Stretch& a, const Stretch& b) {
-    return a.ratio < b.ratio || (!std::isnan(a.ratio) && std::isnan(b.ratio));
-  });
 }
 
 } // namespace boba

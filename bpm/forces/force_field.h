@@ -70,7 +70,7 @@ public:
     double ratio = 0.0;
     int grain = 0, node = 0;
   };
-  Stretch largest_stretch(const LaneState& state) const;
+  Stretch largest_stretch(const LaneState& state, const Box& box) const;
 
   ContactList& contact_list() { return contact_list_; }
   const ContactList& contact_list() const { return contact_list_; }
