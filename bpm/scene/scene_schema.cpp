@@ -84,7 +84,7 @@ std::vector<SceneSection> general_sections() {
               joined(interval_keys("a frame", "", ""),
                      {boolean_key("velocities", "false", "store the nodes' velocities too")})),
       section("output.dump",
-              "dump.lammpstrj.gz for OVITO: written when this table exists; frames as for the trajectory.",
+              "dump.lammpstrj for OVITO: written when this table exists; frames as for the trajectory.",
               joined(interval_keys("a frame", "", ""),
                      {boolean_key("velocities", "false", "store the nodes' velocities too")})),
       section("output.vtk",
