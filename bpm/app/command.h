@@ -4,7 +4,6 @@
 #include "bpm/app/exit_code.h"
 
 #include <CLI/CLI.hpp>
-
 #include <functional>
 #include <memory>
 #include <string>

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/command.h"
-
 #include "bpm/dynamics/simulation.h"
 #include "bpm/io/input_error.h"
 #include "bpm/io/lammps_dump.h"
 #include "bpm/io/lammps_packing.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
+#include <fmt/format.h>
 
 namespace boba {
 
@@ -86,7 +84,8 @@ CommandBody add_forces_command(CLI::App& app) {
   auto a = std::make_shared<ForcesArguments>();
   app.add_option("reference", a->reference, "LAMMPS data file of the undeformed grains: bonds and their rest lengths")
       ->required();
-  app.add_option("--state", a->state, "LAMMPS dump or data file with cell, positions, velocities (default: the reference)");
+  app.add_option("--state", a->state,
+                 "LAMMPS dump or data file with cell, positions, velocities (default: the reference)");
   app.add_option("--timestep", a->timestep, "frame of the dump (default: its last)");
   app.add_option("--alpha", a->alpha, "many-body coefficient, k d")->required();
   app.add_option("--k", a->material.k, "stiffness")->capture_default_str();

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/command.h"
-
 #include "bpm/app/version.h"
-#include "bpm/forces/kernels/kernel_table.h"
+#include "bpm/forces/kernels/kernels.h"
 #include "bpm/grain/template_cache.h"
 #include "bpm/scene/poisson_table.h"
 #include "bpm/scene/schema.h"
 
 #include <fmt/format.h>
-
 #include <thread>
 
 namespace boba {
@@ -19,7 +17,7 @@ ExitCode print_info() {
   const PoissonTable table = PoissonTable::installed();
   const auto [lowest, highest] = table.alpha_range();
   fmt::print("{}\n", version_text());
-  fmt::print("instruction set: {}; cores: {}\n", kernels::best_kernel_table().name, std::thread::hardware_concurrency());
+  fmt::print("instruction set: {}; cores: {}\n", kernels::best_table().name, std::thread::hardware_concurrency());
   fmt::print("template cache: {}\n", default_cache_directory().string());
   fmt::print("table of elastic constants: alpha {:g} to {:g} k d, nu {:g} to {:g}\n  {}\n", lowest, highest,
              table.poisson(lowest, 1.0), table.poisson(highest, 1.0), table.source());

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/command.h"
-
 #include "bpm/app/output_folder.h"
 #include "bpm/app/sibling.h"
 #include "bpm/io/input_error.h"

@@ -19,6 +19,7 @@ public:
 
   bool wants(const StepForecast& forecast) override;
   void observe(const Simulation& simulation, const StageProgress& progress) override;
+  std::int64_t last_step() const { return last_step_; }
 
 private:
   Schedule schedule_;

@@ -4,10 +4,9 @@
 #include "bpm/app/sibling.h"
 #include "bpm/app/version.h"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <cstdio>
+#include <fmt/format.h>
 #include <new>
 #include <stdexcept>
 
@@ -19,7 +18,8 @@ const std::array commands = {
     boba::Command{"run", "run a scene", boba::add_run_command},
     boba::Command{"resume", "go on with a run that was stopped or killed", boba::add_resume_command},
     boba::Command{"check", "say what a scene would run, without running it", boba::add_check_command},
-    boba::Command{"forces", "forces and pressure tensor of a LAMMPS data file of bonded grains", boba::add_forces_command},
+    boba::Command{"forces", "forces and pressure tensor of a LAMMPS data file of bonded grains",
+                  boba::add_forces_command},
     boba::Command{"plot", "plot a run's table", boba::add_plot_command},
     boba::Command{"info", "version, instruction set, scene reference", boba::add_info_command},
 };

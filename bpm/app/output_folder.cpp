@@ -4,7 +4,6 @@
 #include "bpm/io/input_error.h"
 
 #include <fmt/format.h>
-
 #include <stdexcept>
 
 namespace boba {
@@ -20,8 +19,10 @@ void OutputFolder::check_free(bool force) const {
     throw InputError(fmt::format("output: {} is not a folder", root_.string()));
   }
   if (!force && !fs::is_empty(root_, error)) {
-    throw InputError(fmt::format("output: {0} is there already and not empty; --force replaces the run in it, --output names "
-                                 "another folder, boba resume {0} goes on with it", root_.string()));
+    throw InputError(
+        fmt::format("output: {0} is there already and not empty; --force replaces the run in it, --output names "
+                    "another folder, boba resume {0} goes on with it",
+                    root_.string()));
   }
 }
 

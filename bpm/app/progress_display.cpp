@@ -3,11 +3,10 @@
 
 #include "bpm/dynamics/simulation.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fmt/format.h>
 #include <unistd.h>
 
 namespace boba {
@@ -44,7 +43,9 @@ ProgressDisplay::ProgressDisplay(double modulus, std::int64_t n_nodes, bool quie
     : modulus_(modulus), n_nodes_(static_cast<double>(n_nodes)), quiet_(quiet), terminal_(isatty(STDOUT_FILENO) == 1),
       interval_(terminal_ ? terminal_interval : pipe_interval) {}
 
-bool ProgressDisplay::wants(const StepForecast&) { return !quiet_ && seconds_since(last_) >= interval_; }
+bool ProgressDisplay::wants(const StepForecast&) {
+  return !quiet_ && seconds_since(last_) >= interval_;
+}
 
 void ProgressDisplay::begin_stage(std::int64_t step, const StageProgress& progress) {
   finish();

@@ -8,8 +8,8 @@
 
 namespace boba {
 
-/// Shows a person where a run is: a bar that is drawn over itself on a terminal, a line every so often on a pipe, with the
-/// quantity the stage drives, speed and time left.
+/// Shows a person where a run is: a bar that is drawn over itself on a terminal, a line every so often on a pipe, with
+/// the quantity the stage drives, speed and time left.
 class ProgressDisplay : public Observer {
 public:
   /// `modulus` > 0 shows pressures as P~ = P / modulus.

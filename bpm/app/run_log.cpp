@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/run_log.h"
 
+#include <cstdio>
 #include <fmt/format.h>
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/spdlog.h>
-
-#include <cstdio>
 #include <stdexcept>
 
 namespace boba {
@@ -22,7 +21,9 @@ RunLog::RunLog(const std::filesystem::path& file, bool quiet) : quiet_(quiet) {
 }
 
 // Texts are handed over as arguments, never as format strings: they may hold braces from a scene.
-void RunLog::note(const std::string& text) { logger_->info("{}", text); }
+void RunLog::note(const std::string& text) {
+  logger_->info("{}", text);
+}
 
 void RunLog::say(const std::string& text) {
   note(text);
@@ -37,6 +38,8 @@ void RunLog::warn(const std::string& text) {
   fmt::print(stderr, "boba: warning: {}\n", text);
 }
 
-void RunLog::error(const std::string& text) { logger_->error("{}", text); }
+void RunLog::error(const std::string& text) {
+  logger_->error("{}", text);
+}
 
 } // namespace boba

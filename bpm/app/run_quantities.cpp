@@ -7,7 +7,8 @@
 
 namespace boba {
 
-PackingNumbers::PackingNumbers(const Packing& packing, const Material& material, std::optional<double> effective_modulus)
+PackingNumbers::PackingNumbers(const Packing& packing, const Material& material,
+                               std::optional<double> effective_modulus)
     : modulus(effective_modulus), n_nodes(static_cast<std::int64_t>(packing.position.size())) {
   for (int g = 0; g < packing.n_grains(); ++g) {
     reference_volume += packing.template_of(g).reference_volume;
@@ -20,7 +21,9 @@ double PackingNumbers::normalised(double pressure) const {
   return modulus ? pressure / *modulus : std::numeric_limits<double>::quiet_NaN();
 }
 
-double PackingNumbers::phi_reference(const Box& box) const { return reference_volume / box.volume(); }
+double PackingNumbers::phi_reference(const Box& box) const {
+  return reference_volume / box.volume();
+}
 
 double PackingNumbers::inertial_number(double rate, double pressure) const {
   if (rate == 0.0) {

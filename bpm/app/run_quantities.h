@@ -10,10 +10,10 @@ namespace boba {
 
 /// Constants of a packing that turn sums into the numbers of docs/notation.md, "Derived numbers".
 struct PackingNumbers {
-  double reference_volume = 0.0;  ///< d^3, sum over grains
-  double grain_diameter = 0.0;    ///< d; of the sphere with the mean grain's reference volume
-  double density = 0.0;           ///< m/d^3: node mass over reference volume
-  std::optional<double> modulus;  ///< E / (2 - 2 nu^2), k/d
+  double reference_volume = 0.0; ///< d^3, sum over grains
+  double grain_diameter = 0.0;   ///< d; of the sphere with the mean grain's reference volume
+  double density = 0.0;          ///< m/d^3: node mass over reference volume
+  std::optional<double> modulus; ///< E / (2 - 2 nu^2), k/d
   std::int64_t n_nodes = 0;
 
   PackingNumbers(const Packing& packing, const Material& material, std::optional<double> effective_modulus);

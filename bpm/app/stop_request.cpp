@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/stop_request.h"
 
-#include <fmt/format.h>
-
 #include <csignal>
+#include <fmt/format.h>
 
 namespace boba {
 
@@ -35,7 +34,9 @@ StopRequest::StopRequest(std::optional<double> wall_time) : wall_time_(wall_time
   install(remember);
 }
 
-StopRequest::~StopRequest() { install(SIG_DFL); }
+StopRequest::~StopRequest() {
+  install(SIG_DFL);
+}
 
 bool StopRequest::pending() const {
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;

@@ -4,16 +4,34 @@
 #include "bpm/dynamics/simulation.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
 
 namespace boba {
 
-std::vector<TableColumn> run_table_columns() {
-  return {{"step", ""},          {"time", "tau"},          {"stage", ""},           {"strain", ""},
-          {"phi_reference", ""}, {"P", "k/d"},             {"P_normalised", ""},    {"mu", ""},
-          {"I", ""},             {"kinetic_energy", "k d^2"}, {"elastic_energy", "k d^2"}, {"largest_overlap", "d"},
-          {"Lx", "d"},           {"Ly", "d"},              {"Lz", "d"},             {"xy", "d"},
-          {"xz", "d"},           {"yz", "d"},              {"end_gap", "d"},        {"end_force", "k d"},
-          {"speed", "steps/s"}};
+std::vector<std::string> run_table_columns() {
+  return {"step",
+          "time_tau",
+          "stage",
+          "strain",
+          "phi_reference",
+          "P_k/d",
+          "P_normalised",
+          "mu",
+          "inertial_number",
+          "kinetic_energy_kd2",
+          "elastic_energy_kd2",
+          "largest_overlap_d",
+          "Lx_d",
+          "Ly_d",
+          "Lz_d",
+          "xy_d",
+          "xz_d",
+          "yz_d",
+          "end_gap_d",
+          "end_force_kd",
+          "speed_steps/s"};
 }
 
 bool TableObserver::wants(const StepForecast& forecast) {
@@ -38,27 +56,28 @@ void TableObserver::observe(const Simulation& simulation, const StageProgress& p
   const Totals& totals = simulation.totals();
   const Box& box = simulation.box();
   const auto [lower, upper] = simulation.end_forces();
-  writer_.write({static_cast<double>(simulation.step()),
-                 simulation.time(),
-                 static_cast<double>(progress.stage),
-                 simulation.strain(),
-                 numbers_.phi_reference(box),
-                 totals.pressure,
-                 numbers_.normalised(totals.pressure),
-                 totals.mu(),
-                 numbers_.inertial_number(rate_, totals.pressure),
-                 totals.kinetic_energy,
-                 totals.elastic_energy,
-                 totals.largest_overlap,
-                 box.lengths()[0],
-                 box.lengths()[1],
-                 box.lengths()[2],
-                 box.xy(),
-                 box.xz(),
-                 box.yz(),
-                 simulation.end_gap(),
-                 0.5 * (lower + upper),
-                 steps_per_second(simulation.step())});
+  const auto known = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
+  const std::array<std::optional<double>, 20> values = {simulation.time(),
+                                                        static_cast<double>(progress.stage),
+                                                        simulation.strain(),
+                                                        numbers_.phi_reference(box),
+                                                        totals.pressure,
+                                                        known(numbers_.normalised(totals.pressure)),
+                                                        totals.mu(),
+                                                        known(numbers_.inertial_number(rate_, totals.pressure)),
+                                                        totals.kinetic_energy,
+                                                        totals.elastic_energy,
+                                                        totals.largest_overlap,
+                                                        box.lengths()[0],
+                                                        box.lengths()[1],
+                                                        box.lengths()[2],
+                                                        box.xy(),
+                                                        box.xz(),
+                                                        box.yz(),
+                                                        simulation.end_gap(),
+                                                        0.5 * (lower + upper),
+                                                        steps_per_second(simulation.step())};
+  writer_.write(simulation.step(), values);
 }
 
 } // namespace boba
