@@ -17,7 +17,7 @@ struct StageEstimates {
 
 /// Shear, hold and press know their length. A compression is taken to end where packings of spheres are known to be,
 /// phi = 0.6 + 0.27 (P~ / 0.1)^(2/3) with phi counted to d/2 outside the nodes, plus a fifth for settling.
-/// Source: docs/notation.md, "Published numbers": jamming and phi at P~ = 0.1.
+/// Source: Clemmer, Hackney & Grest: phi_c about 0.6, P~ ~ (phi - phi_c)^(3/2), phi about 0.87 at P~ = 0.1.
 StageEstimates estimate_stages(const std::vector<SceneStage>& stages, const Packing& packing,
                                const PackingNumbers& numbers, double dt);
 
