@@ -56,7 +56,8 @@ ProgramResult run_program(const std::vector<std::string>& command, const std::st
     become(command, folder, base + ".out", base + ".err");
   }
   if (disturbance) {
-    for (int i = 0; i < 6000 && !disturbance->once_exists.empty() && !std::filesystem::exists(disturbance->once_exists); ++i) {
+    for (int i = 0; i < 6000 && !disturbance->once_exists.empty() && !std::filesystem::exists(disturbance->once_exists);
+         ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     std::this_thread::sleep_for(std::chrono::duration<double>(disturbance->after_seconds));

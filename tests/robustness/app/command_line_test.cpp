@@ -7,7 +7,9 @@
 namespace boba::test {
 namespace {
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 TEST(CommandLine, HelpAndVersionAreNoErrors) {
   const TemporaryFolder folder;
@@ -40,7 +42,7 @@ TEST(CommandLine, AWrongSceneWritesNothingAndNamesThePlace) {
       {{"run", "scene.toml", "--set", "stage.2.ratte=1"}, "Did you mean \"rate\"?"},
       {{"run", "scene.toml", "--set", "stage.1.pressure=nan"}, "stage.1.pressure = nan"},
       {{"run", "scene.toml", "--set", "species.0.count=100000000"}, "this machine has"},
-      {{"run", "scene.toml", "--set", "template.0.nodes=100000000"}, "this machine has"},
+      {{"run", "scene.toml", "--set", "template.0.nodes=100000000"}, "template.0.nodes = 100000000"},
       {{"run", "scene.toml", "--set", "stage.insert.packing_fraction=0.7"}, "Allowed for these grains: at most"},
       {{"run", "scene.toml", "--set", "output.directory=/tmp/elsewhere"}, "relative path"},
       {{"run", "scene.toml", "--set", "output.directory=a/../../b"}, "without \"..\""},
@@ -98,7 +100,8 @@ TEST(CommandLine, CheckSaysWhatWouldRunAndFailsAnUnstableStep) {
   folder.file("scene.toml", small_scene);
   const ProgramResult good = boba({"check", "scene.toml"}, folder);
   EXPECT_EQ(good.exit_code, 0) << good.err;
-  for (const char* word : {"240 nodes", "4 grains", "bytes a node", "stage.2 shear: 5000 steps", "lanes filled: 50 %", "skipped:"}) {
+  for (const char* word :
+       {"240 nodes", "4 grains", "bytes a node", "stage.2 shear: 5000 steps", "lanes filled: 50 %", "skipped:"}) {
     EXPECT_TRUE(has(good.out, word)) << word << " is missing in: " << good.out;
   }
   EXPECT_EQ(boba({"check", "scene.toml", "--set", "run.dt=0.9"}, folder).exit_code, 3);

@@ -4,9 +4,8 @@
 #include "bpm/io/trajectory.h"
 #include "tests/robustness/app/small_scene.h"
 
-#include <gtest/gtest.h>
-
 #include <csignal>
+#include <gtest/gtest.h>
 
 namespace boba::test {
 namespace {
@@ -21,7 +20,8 @@ void expect_same_run(const std::filesystem::path& a, const std::filesystem::path
     EXPECT_EQ(x.velocity, y.velocity) << "frame " << frame;
     EXPECT_EQ(x.grain_stress, y.grain_stress) << "frame " << frame;
   }
-  const CheckpointData end = latest_checkpoint(a / "checkpoints").data, other = latest_checkpoint(b / "checkpoints").data;
+  const CheckpointData end = latest_checkpoint(a / "checkpoints").data,
+                       other = latest_checkpoint(b / "checkpoints").data;
   EXPECT_EQ(end.real, other.real);
   EXPECT_EQ(end.integer, other.integer);
 }
@@ -67,8 +67,8 @@ TEST(Resume, AfterSignals) {
   run_alone(folder, {"--set", "stage.2.strain=6"});
   for (const int signal : {SIGINT, SIGTERM}) {
     const std::string out = std::to_string(signal);
-    const ProgramResult stopped =
-        boba({"run", "scene.toml", "--set", "stage.2.strain=6", "--output", out}, folder, Disturbance{0.1, signal, (folder / out / "table.csv").string()});
+    const ProgramResult stopped = boba({"run", "scene.toml", "--set", "stage.2.strain=6", "--output", out}, folder,
+                                       Disturbance{0.1, signal, (folder / out / "table.csv").string()});
     EXPECT_EQ(stopped.exit_code, 75) << stopped.err;
     const ProgramResult resumed = boba({"resume", out}, folder);
     EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
