@@ -18,6 +18,8 @@ namespace {
 const std::string packing_prefix = "packing/";
 const std::string last_steps_name = "output/last_steps";
 
+bool is_simulation_name(const std::string& name) { return name.find('/') == std::string::npos && name != "modulus"; }
+
 std::vector<double> flat(const std::vector<Vector3>& vectors) {
   std::vector<double> numbers;
   numbers.reserve(3 * vectors.size());
@@ -145,12 +147,12 @@ RunSetup setup_from(const LatestCheckpoint& checkpoint, const OutputFolder& fold
     }
     RunSetup::Restart restart;
     for (const auto& [name, values] : data.real) {
-      if (name.find('/') == std::string::npos && name != "modulus") {
+      if (is_simulation_name(name)) {
         restart.state.real[name] = values;
       }
     }
     for (const auto& [name, values] : data.integer) {
-      if (name.find('/') == std::string::npos) {
+      if (is_simulation_name(name)) {
         restart.state.integer[name] = values;
       }
     }
@@ -179,6 +181,9 @@ void CheckpointObserver::observe(const Simulation& simulation, const StageProgre
 }
 
 std::filesystem::path CheckpointObserver::write(const Simulation& simulation) {
+  const auto belongs_to_simulation = [](const auto& entry) { return is_simulation_name(entry.first); };
+  std::erase_if(data_.real, belongs_to_simulation); // what an earlier stage stored may have no successor
+  std::erase_if(data_.integer, belongs_to_simulation);
   SavedState state = simulation.save();
   for (auto& [name, values] : state.real) {
     data_.real[name] = std::move(values);
