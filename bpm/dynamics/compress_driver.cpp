@@ -27,6 +27,10 @@ bool CompressDriver::has_settled(const Stepper& stepper) const {
   return stepper.kinetic_energy() < stage_.kinetic_tolerance * elastic;
 }
 
+bool CompressDriver::may_end(const Stepper& stepper) const {
+  return phase_ == Phase::settle && (stepper.step() + 1) % settle_interval == 0;
+}
+
 CellRates CompressDriver::update(Stepper& stepper) {
   if (stepper.time() - start_time_ > stage_.max_time) {
     throw std::runtime_error(

@@ -16,6 +16,7 @@ public:
   CellRates update(Stepper& stepper) override;
   bool finished() const override { return phase_ == Phase::settled; }
   std::int64_t steps_left(const Stepper&) const override { return -1; }
+  bool may_end(const Stepper& stepper) const override;
   StageProgress progress(const Stepper& stepper) const override;
   void save(SavedState& saved) const override;
   void restore(const SavedState& saved, Stepper& stepper) override;

@@ -36,7 +36,8 @@ public:
   virtual ~Observer() = default;
   /// Asked before every step: does this observer want to see it (with the full stress tensor evaluated)?
   virtual bool wants(const StepForecast& forecast) = 0;
-  /// Called after each step it asked for, and with the state before the first step of every stage.
+  /// Called after each step it asked for, and with the state before the first and after the last step of every stage
+  /// (the same step may thus come more than once).
   virtual void observe(const Simulation& simulation, const StageProgress& progress) = 0;
 };
 

@@ -69,17 +69,16 @@ struct Simulation::Impl {
   void take_step(const Stage& stage, std::span<Observer* const> observers, Simulation& self) {
     const auto* shear = std::get_if<ShearStage>(&stage);
     const std::vector<Observer*> wanting = interested(observers, shear != nullptr ? shear->rate : 0.0);
-    const Virial virial = !wanting.empty()            ? Virial::full
-                          : driver->needs_pressure() ? Virial::trace
-                                                     : Virial::none;
+    const bool full = !wanting.empty() || driver->may_end(stepper);
+    const Virial virial = full ? Virial::full : driver->needs_pressure() ? Virial::trace : Virial::none;
     stepper.advance(virial);
     stepper.move_cell(driver->update(stepper));
     check_bonds();
-    if (!wanting.empty()) {
+    if (full) {
       totals = stepper.totals();
-      for (Observer* observer : wanting) {
-        observer->observe(self, progress(stage));
-      }
+    }
+    for (Observer* observer : wanting) {
+      observer->observe(self, progress(stage));
     }
   }
 
@@ -127,6 +126,9 @@ RunOutcome Simulation::run(int stage_index, const Stage& stage, std::span<Observ
       return RunOutcome::stopped;
     }
     impl_->take_step(stage, observers, *this);
+  }
+  for (Observer* observer : observers) {
+    observer->observe(*this, impl_->progress(stage));
   }
   impl_->driver->end(impl_->stepper);
   impl_->driver.reset();

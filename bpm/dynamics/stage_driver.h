@@ -23,6 +23,8 @@ public:
   virtual bool finished() const = 0;
   /// Number of steps left when it is known beforehand, -1 otherwise.
   virtual std::int64_t steps_left(const Stepper& stepper) const = 0;
+  /// May the stage end with the next step? Its stress is then computed, for whoever looks at the stage's end.
+  virtual bool may_end(const Stepper& stepper) const { return steps_left(stepper) == 1; }
   /// Called when the stage is over.
   virtual void end(Stepper&) {}
   /// Fills phase, share done, driven quantity, value and target.

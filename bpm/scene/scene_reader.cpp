@@ -103,7 +103,7 @@ SceneTemplate read_template(const SceneTable& table) {
   try {
     validate(spec);
   } catch (const std::invalid_argument& error) {
-    table.fail("name", fmt::format("cannot be made: {}", error.what()));
+    table.fail(table.has("nodes") ? "nodes" : "name", fmt::format("the template cannot be made: {}", error.what()));
   }
   return result;
 }

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/app/run_setup.h"
+#include "bpm/app/schedule.h"
+#include "bpm/dynamics/observer.h"
+#include "bpm/io/checkpoint.h"
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+namespace boba {
+
+/// What a checkpoint holds beyond the simulation's state, so that a run can go on from it alone: the scene's text and
+/// overrides, the packing's grains and networks, the modulus, the instruction set. Source: docs/formats.md,
+/// "Checkpoint".
+CheckpointData constant_part(const RunSetup& setup, const Simulation& simulation);
+
+/// The inverse: a setup that goes on from the checkpoint. Paths of the scene need not exist any more.
+/// \throws InputError when the checkpoint lacks a part.
+RunSetup setup_from(const LatestCheckpoint& checkpoint, const OutputFolder& folder);
+
+/// Writes checkpoints by real time and by simulated time.
+class CheckpointObserver : public Observer {
+public:
+  /// `last_steps` is asked for what the other writers have written, see RunSetup::Restart.
+  CheckpointObserver(std::filesystem::path folder, CheckpointData constant, double every_seconds,
+                     const Schedule& schedule, std::function<std::vector<std::int64_t>()> last_steps)
+      : folder_(std::move(folder)), data_(std::move(constant)), every_seconds_(every_seconds), schedule_(schedule),
+        last_steps_(std::move(last_steps)) {}
+
+  bool wants(const StepForecast& forecast) override;
+  void observe(const Simulation& simulation, const StageProgress& progress) override;
+  /// Writes one now and returns its path.
+  std::filesystem::path write(const Simulation& simulation);
+
+private:
+  using Clock = std::chrono::steady_clock;
+  std::filesystem::path folder_;
+  CheckpointData data_;
+  double every_seconds_;
+  Schedule schedule_;
+  std::function<std::vector<std::int64_t>()> last_steps_;
+  bool due_ = false;
+  Clock::time_point last_ = Clock::now();
+};
+
+} // namespace boba

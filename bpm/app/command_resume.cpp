@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/app/checkpoint_observer.h"
+#include "bpm/app/command.h"
+#include "bpm/app/run_session.h"
+#include "bpm/forces/kernels/kernels.h"
+#include "bpm/io/input_error.h"
+#include "bpm/scene/scene_packing.h"
+
+#include <fmt/format.h>
+
+namespace boba {
+
+namespace {
+
+struct ResumeArguments {
+  std::filesystem::path folder;
+  std::optional<int> threads;
+  std::optional<double> wall_time;
+  bool allow_other_isa = false;
+  bool quiet = false;
+};
+
+/// The same numbers come only from the same instruction set.
+void check_instruction_set(const LatestCheckpoint& checkpoint, bool allow_other) {
+  const auto at = checkpoint.data.text.find("instruction_set");
+  const std::string then = at == checkpoint.data.text.end() ? "unknown" : at->second;
+  const std::string now = kernels::best_table().name;
+  if (then != now && !allow_other) {
+    throw InputError(
+        fmt::format("{}: the run was computed with {}, this machine takes {}; the continuation would not be the "
+                    "same bit for bit. --allow-other-isa goes on all the same",
+                    checkpoint.path.string(), then, now));
+  }
+}
+
+ExitCode resume(const ResumeArguments& a) {
+  const OutputFolder folder(a.folder);
+  const LatestCheckpoint checkpoint = latest_checkpoint(folder.checkpoints());
+  for (const std::string& refused : checkpoint.refused) {
+    fmt::print(stderr, "boba: warning: {}; going on from {}\n", refused, checkpoint.path.string());
+  }
+  check_instruction_set(checkpoint, a.allow_other_isa);
+  RunSetup setup = setup_from(checkpoint, folder);
+  setup.scene.options.threads = a.threads.value_or(setup.scene.options.threads);
+  setup.scene.wall_time = a.wall_time ? a.wall_time : setup.scene.wall_time;
+  setup.quiet = a.quiet;
+  setup.stages = resolve_pressures(setup.scene, setup.modulus);
+  return run_scene(std::move(setup));
+}
+
+} // namespace
+
+CommandBody add_resume_command(CLI::App& app) {
+  auto a = std::make_shared<ResumeArguments>();
+  app.add_option("run", a->folder, "output folder of the run")->required();
+  app.add_option("--threads", a->threads, "threads (default: the scene's, or all cores)")->check(CLI::Range(1, 1024));
+  app.add_option("--wall-time", a->wall_time, "stop with a checkpoint after so many seconds")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--allow-other-isa", a->allow_other_isa,
+               "go on although the instruction set differs: no longer bit for bit");
+  app.add_flag("--quiet", a->quiet, "print nothing but errors");
+  return [a] { return resume(*a); };
+}
+
+} // namespace boba

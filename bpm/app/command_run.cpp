@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/app/command.h"
+#include "bpm/app/run_session.h"
+#include "bpm/io/output_file.h"
+#include "bpm/scene/scene_packing.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace boba {
+
+namespace {
+
+struct RunArguments {
+  std::filesystem::path scene, output;
+  std::vector<std::string> overrides;
+  std::optional<int> threads;
+  std::optional<double> wall_time;
+  bool force = false;
+  bool quiet = false;
+};
+
+/// The scene as it was given, with the command line's changes as comments.
+void copy_scene(const Scene& scene, const OutputFolder& folder, bool force) {
+  OutputFile file(folder.scene(), force ? FileMode::overwrite : FileMode::create);
+  file.write(scene.text);
+  for (const std::string& assignment : scene.overrides) {
+    file.print("# --set {}\n", assignment);
+  }
+  file.close();
+}
+
+ExitCode run(const RunArguments& a) {
+  Scene scene = read_scene(a.scene, a.overrides);
+  scene.options.threads = a.threads.value_or(scene.options.threads);
+  scene.wall_time = a.wall_time ? a.wall_time : scene.wall_time;
+  const OutputFolder folder(a.output.empty() ? scene.output.directory : a.output);
+  folder.check_free(a.force);
+  const PoissonTable table = PoissonTable::installed();
+  const auto narrate = [&a](const std::string& text) {
+    if (!a.quiet) {
+      fmt::print("{}\n", text);
+      std::fflush(stdout);
+    }
+  };
+  RunSetup setup{std::move(scene), folder, {}, {}, std::nullopt, a.quiet, std::nullopt};
+  setup.packing = make_start(setup.scene, table, narrate);
+  setup.modulus = effective_modulus(setup.packing, setup.scene.material, table);
+  setup.stages = resolve_pressures(setup.scene, setup.modulus);
+  // Everything that can be wrong with the input has been found by now: from here on files are written.
+  folder.create(a.force);
+  copy_scene(setup.scene, folder, a.force);
+  return run_scene(std::move(setup));
+}
+
+} // namespace
+
+CommandBody add_run_command(CLI::App& app) {
+  auto a = std::make_shared<RunArguments>();
+  app.add_option("scene", a->scene, "scene file (TOML); docs/scene.md lists its keys")->required();
+  app.add_option("--set", a->overrides, "replace a value: section.key=value, stage.0.key=value")
+      ->type_name("PLACE=VALUE")
+      ->allow_extra_args(false);
+  app.add_option("--output", a->output, "output folder (default: the scene's, below the current folder)");
+  app.add_option("--threads", a->threads, "threads (default: the scene's, or all cores)")->check(CLI::Range(1, 1024));
+  app.add_option("--wall-time", a->wall_time, "stop with a checkpoint after so many seconds")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--force", a->force, "replace the run that is in the output folder");
+  app.add_flag("--quiet", a->quiet, "print nothing but errors");
+  return [a] { return run(*a); };
+}
+
+} // namespace boba

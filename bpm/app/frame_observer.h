@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/app/schedule.h"
+#include "bpm/dynamics/observer.h"
+#include "bpm/packing/snapshot.h"
+
+#include <functional>
+
+namespace boba {
+
+/// Hands snapshots to a writer of frames: at the ends of stages and whenever the schedule says so, each step once.
+class FrameObserver : public Observer {
+public:
+  using Write = std::function<void(const Snapshot&)>;
+  /// `last_step`: of the frame that was written last, for a run that goes on; -1 for a new one.
+  FrameObserver(const Schedule& schedule, bool velocities, std::int64_t last_step, Write write)
+      : schedule_(schedule), velocities_(velocities), last_step_(last_step), write_(std::move(write)) {}
+
+  bool wants(const StepForecast& forecast) override;
+  void observe(const Simulation& simulation, const StageProgress& progress) override;
+  std::int64_t last_step() const { return last_step_; }
+
+private:
+  Schedule schedule_;
+  bool velocities_;
+  std::int64_t last_step_;
+  Write write_;
+};
+
+} // namespace boba

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The program `boba`: reads the command line, runs one command, turns errors into exit codes.
+#include "bpm/app/command.h"
+#include "bpm/app/sibling.h"
+#include "bpm/app/version.h"
+
+#include <array>
+#include <cstdio>
+#include <fmt/format.h>
+#include <new>
+#include <stdexcept>
+
+namespace {
+
+using boba::ExitCode;
+
+const std::array commands = {
+    boba::Command{"run", "run a scene", boba::add_run_command},
+    boba::Command{"resume", "go on with a run that was stopped or killed", boba::add_resume_command},
+    boba::Command{"check", "say what a scene would run, without running it", boba::add_check_command},
+    boba::Command{"forces", "forces and pressure tensor of a LAMMPS data file of bonded grains",
+                  boba::add_forces_command},
+    boba::Command{"plot", "plot a run's table", boba::add_plot_command},
+    boba::Command{"info", "version, instruction set, scene reference", boba::add_info_command},
+};
+
+/// Programs of their own, started with the arguments that follow.
+struct Sibling {
+  const char* name;
+  const char* summary;
+  const char* program;
+  const char* subcommand; ///< put in front of the arguments, or nullptr
+};
+
+constexpr std::array siblings = {
+    Sibling{"continuum", "start boba-continuum: cylinder and sphere by finite elements", "boba-continuum", nullptr},
+    Sibling{"calibrate", "start boba-calibrate: (k, alpha) to (E, nu) and back", "boba-calibrate", nullptr},
+    Sibling{"compare", "start boba-calibrate compare: particles against the continuum", "boba-calibrate", "compare"},
+};
+
+int report(const std::string& message, ExitCode code) {
+  fmt::print(stderr, "boba: {}\n", message);
+  return static_cast<int>(code);
+}
+
+int run_command(int argc, char** argv) {
+  CLI::App app("Packings of deformable grains, from a scene file.");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", boba::version_text());
+  app.footer("Exit codes: 0 done, 1 failed, 2 wrong input, 3 a check failed, 75 stopped with a checkpoint.");
+  std::vector<std::pair<CLI::App*, boba::CommandBody>> bodies;
+  for (const boba::Command& command : commands) {
+    CLI::App* sub = app.add_subcommand(command.name, command.summary);
+    bodies.emplace_back(sub, command.add(*sub));
+  }
+  for (const Sibling& sibling : siblings) {
+    app.add_subcommand(sibling.name, sibling.summary)->prefix_command();
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) { // --help, --version
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    app.exit(error);
+    return static_cast<int>(ExitCode::wrong_input);
+  }
+  for (const auto& [sub, body] : bodies) {
+    if (sub->parsed()) {
+      return static_cast<int>(body());
+    }
+  }
+  return static_cast<int>(ExitCode::wrong_input);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  try {
+    for (const Sibling& sibling : siblings) {
+      // Handed over whole, before anything here could take an argument (--help, -o) for its own.
+      if (argc > 1 && std::string_view(argv[1]) == sibling.name) {
+        return boba::start_sibling(sibling.program, sibling.subcommand, {argv + 2, argv + argc});
+      }
+    }
+    return run_command(argc, argv);
+  } catch (const std::invalid_argument& error) {
+    return report(error.what(), ExitCode::wrong_input);
+  } catch (const std::bad_alloc&) {
+    return report("out of memory", ExitCode::failed);
+  } catch (const std::exception& error) {
+    return report(error.what(), ExitCode::failed);
+  }
+}

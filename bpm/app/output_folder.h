@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+namespace boba {
+
+/// The folder of one run and the names in it. Everything that a run writes lies here.
+class OutputFolder {
+public:
+  explicit OutputFolder(std::filesystem::path root) : root_(std::move(root)) {}
+
+  const std::filesystem::path& root() const { return root_; }
+  std::filesystem::path scene() const { return root_ / "scene.toml"; }
+  std::filesystem::path log() const { return root_ / "run.log"; }
+  std::filesystem::path table() const { return root_ / "table.csv"; }
+  std::filesystem::path trajectory() const { return root_ / "trajectory.h5"; }
+  std::filesystem::path dump() const { return root_ / "dump.lammpstrj"; }
+  std::filesystem::path vtk() const { return root_ / "vtk"; }
+  std::filesystem::path checkpoints() const { return root_ / "checkpoints"; }
+
+  /// \throws InputError when the folder holds anything and `force` is false, or when it is no folder.
+  void check_free(bool force) const;
+  /// Makes the folder; with `force` removes what an earlier run wrote there, and only that.
+  /// \throws std::runtime_error when the system refuses.
+  void create(bool force) const;
+
+private:
+  std::filesystem::path root_;
+};
+
+} // namespace boba

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/app/run_quantities.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace boba {
+
+PackingNumbers::PackingNumbers(const Packing& packing, const Material& material,
+                               std::optional<double> effective_modulus)
+    : modulus(effective_modulus), n_nodes(static_cast<std::int64_t>(packing.position.size())) {
+  for (int g = 0; g < packing.n_grains(); ++g) {
+    reference_volume += packing.template_of(g).reference_volume;
+  }
+  grain_diameter = std::cbrt(6.0 * reference_volume / packing.n_grains() / std::numbers::pi);
+  density = material.node_mass * static_cast<double>(n_nodes) / reference_volume;
+}
+
+double PackingNumbers::normalised(double pressure) const {
+  return modulus ? pressure / *modulus : std::numeric_limits<double>::quiet_NaN();
+}
+
+double PackingNumbers::phi_reference(const Box& box) const {
+  return reference_volume / box.volume();
+}
+
+double PackingNumbers::inertial_number(double rate, double pressure) const {
+  if (rate == 0.0) {
+    return 0.0;
+  }
+  return pressure > 0.0 ? std::abs(rate) * grain_diameter * std::sqrt(density / pressure)
+                        : std::numeric_limits<double>::quiet_NaN();
+}
+
+double shear_rate(const Stage& stage) {
+  const auto* shear = std::get_if<ShearStage>(&stage);
+  return shear == nullptr ? 0.0 : shear->rate;
+}
+
+} // namespace boba

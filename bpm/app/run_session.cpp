@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/app/run_session.h"
+
+#include "bpm/app/checkpoint_observer.h"
+#include "bpm/app/progress_display.h"
+#include "bpm/app/run_log.h"
+#include "bpm/app/run_quantities.h"
+#include "bpm/app/run_writers.h"
+#include "bpm/app/stage_summary.h"
+#include "bpm/app/stop_request.h"
+#include "bpm/app/version.h"
+
+#include <fmt/format.h>
+
+namespace boba {
+
+namespace {
+
+/// Feeds the summary line with the steps that somebody else looks at.
+class SummaryObserver : public Observer {
+public:
+  explicit SummaryObserver(StageSummary& summary, Observer& pace) : summary_(summary), pace_(pace) {}
+  bool wants(const StepForecast& forecast) override {
+    wanted_ = pace_.wants(forecast);
+    return wanted_;
+  }
+  void observe(const Simulation& simulation, const StageProgress& progress) override {
+    pace_.observe(simulation, progress);
+    if (wanted_) {
+      summary_.add(simulation, progress.done);
+    }
+    wanted_ = false;
+  }
+
+private:
+  StageSummary& summary_;
+  Observer& pace_;
+  bool wanted_ = false;
+};
+
+/// One run: its simulation, its files, and the loop over the stages.
+class Session {
+public:
+  explicit Session(RunSetup setup)
+      : setup_(std::move(setup)), simulation_(std::move(setup_.packing), setup_.scene.material, setup_.scene.options),
+        numbers_(simulation_.packing(), setup_.scene.material, setup_.modulus), stop_(setup_.scene.wall_time),
+        log_(setup_.folder.log(), setup_.quiet), summary_(numbers_),
+        progress_(setup_.modulus.value_or(0.0), numbers_.n_nodes, setup_.quiet) {
+    if (setup_.restart) {
+      simulation_.restore(setup_.restart->state);
+    }
+    writers_ = open_writers(setup_, simulation_, numbers_);
+    const OutputPlan& plan = setup_.scene.output;
+    checkpoints_ = std::make_unique<CheckpointObserver>(
+        setup_.folder.checkpoints(), constant_part(setup_, simulation_), plan.checkpoint_seconds,
+        Schedule({std::nullopt, plan.checkpoint_time}, simulation_.strain(), simulation_.time()),
+        [this] { return writers_.last_steps(); });
+  }
+
+  ExitCode run() {
+    introduce();
+    try {
+      return run_stages();
+    } catch (const std::exception& error) {
+      progress_.finish();
+      log_.error(error.what());
+      log_.say("the last checkpoints are kept in " + setup_.folder.checkpoints().string());
+      throw;
+    }
+  }
+
+private:
+  void introduce() {
+    log_.note(version_text() + ", instruction set " + simulation_.instruction_set());
+    for (const std::string& assignment : setup_.scene.overrides) {
+      log_.note("--set " + assignment);
+    }
+    const std::string begin = setup_.restart
+                                  ? fmt::format("going on at step {} from {}", simulation_.step(), setup_.restart->file)
+                                  : "starting";
+    log_.say(fmt::format("{}: {} grains, {} nodes, {} threads, {}; {}", setup_.scene.title,
+                         simulation_.packing().n_grains(), numbers_.n_nodes, setup_.scene.options.threads,
+                         simulation_.instruction_set(), begin));
+  }
+
+  ExitCode run_stages() {
+    SummaryObserver table(summary_, *writers_.table);
+    std::vector<Observer*> observers{&table};
+    for (const auto& frames : writers_.frames) {
+      observers.push_back(frames.get());
+    }
+    observers.push_back(&progress_);
+    observers.push_back(checkpoints_.get()); // last: what it points back to is on disk
+    if (!setup_.restart) {
+      checkpoints_->write(simulation_); // so that a run killed early can be resumed too
+    }
+    for (const SceneStage& stage : setup_.stages) {
+      if (stage.index < simulation_.stage_index()) {
+        continue; // done before the checkpoint
+      }
+      writers_.table->set_shear_rate(shear_rate(stage.stage));
+      summary_.begin(simulation_);
+      const RunOutcome outcome =
+          simulation_.run(stage.index, stage.stage, observers, [this] { return stop_.pending(); });
+      progress_.finish();
+      if (outcome == RunOutcome::stopped) {
+        return stop();
+      }
+      checkpoints_->write(simulation_);
+      log_.say(summary_.text(simulation_, fmt::format("stage.{} {}", stage.index, stage_name(stage.stage))));
+    }
+    return finish();
+  }
+
+  ExitCode stop() {
+    const std::filesystem::path file = checkpoints_->write(simulation_);
+    log_.say(fmt::format("stopped by {} at step {}; checkpoint {}; go on with: boba resume {}", stop_.reason(),
+                         simulation_.step(), file.string(), setup_.folder.root().string()));
+    return ExitCode::stopped;
+  }
+
+  ExitCode finish() {
+    const Timings t = simulation_.timings();
+    log_.note(fmt::format(
+        "seconds: bonds {:.2f}, contacts {:.2f}, search {:.2f}, integration {:.2f}, other {:.2f}; {} steps, {} "
+        "contact lists",
+        t.bonds, t.contacts, t.search, t.integration, t.other, t.steps, t.list_builds));
+    log_.say(fmt::format("done at step {}; results in {}", simulation_.step(), setup_.folder.root().string()));
+    return ExitCode::done;
+  }
+
+  RunSetup setup_;
+  Simulation simulation_;
+  PackingNumbers numbers_;
+  StopRequest stop_;
+  RunLog log_;
+  StageSummary summary_;
+  ProgressDisplay progress_;
+  RunWriters writers_;
+  std::unique_ptr<CheckpointObserver> checkpoints_;
+};
+
+} // namespace
+
+ExitCode run_scene(RunSetup setup) {
+  return Session(std::move(setup)).run();
+}
+
+} // namespace boba

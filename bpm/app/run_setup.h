@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/app/output_folder.h"
+#include "bpm/dynamics/simulation.h"
+#include "bpm/scene/scene.h"
+
+#include <optional>
+#include <vector>
+
+namespace boba {
+
+/// Everything a run needs, decided and checked, before its folder is made.
+struct RunSetup {
+  Scene scene;
+  OutputFolder folder;
+  Packing packing;
+  std::vector<SceneStage> stages; ///< pressures resolved
+  std::optional<double> modulus;  ///< E / (2 - 2 nu^2) of the packing, k/d
+  bool quiet = false;
+
+  /// Set when the run goes on from a checkpoint.
+  struct Restart {
+    SavedState state;
+    std::int64_t step = 0;
+    std::string file;
+    std::vector<std::int64_t> last_steps; ///< written last: by the table, then by each writer of frames
+  };
+  std::optional<Restart> restart;
+};
+
+} // namespace boba

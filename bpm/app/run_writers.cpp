@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/app/run_writers.h"
+
+#include "bpm/app/version.h"
+#include "bpm/io/lammps_dump.h"
+#include "bpm/io/trajectory.h"
+#include "bpm/io/vtk.h"
+
+#include <filesystem>
+
+namespace boba {
+
+namespace {
+
+std::string with_overrides(const Scene& scene) {
+  std::string text = scene.text;
+  for (const std::string& assignment : scene.overrides) {
+    text += "# --set " + assignment + "\n";
+  }
+  return text;
+}
+
+/// Step that a writer (the table is the first) had written last at the checkpoint; -1 for nothing.
+std::int64_t last_step_of(const RunSetup& setup, std::size_t writer) {
+  return setup.restart && writer < setup.restart->last_steps.size() ? setup.restart->last_steps[writer] : -1;
+}
+
+FrameObserver::Write trajectory_writer(const RunSetup& setup, const Simulation& simulation, const FrameOutput& output) {
+  const Topology topology = simulation.packing().topology(true);
+  const std::filesystem::path path = setup.folder.trajectory();
+  if (setup.restart) {
+    auto writer = std::make_shared<TrajectoryWriter>(TrajectoryWriter::go_on(path, topology, setup.restart->step));
+    return [writer](const Snapshot& snapshot) { writer->write(snapshot); };
+  }
+  TrajectoryOrigin origin;
+  origin.scene = with_overrides(setup.scene);
+  origin.seed = setup.scene.seed;
+  origin.version = version();
+  origin.git_hash = git_hash();
+  TrajectoryOptions options;
+  options.velocity = output.velocities;
+  auto writer = std::make_shared<TrajectoryWriter>(path, topology, origin, options);
+  return [writer](const Snapshot& snapshot) { writer->write(snapshot); };
+}
+
+FrameObserver::Write dump_writer(const RunSetup& setup, std::shared_ptr<const Topology> topology) {
+  const std::filesystem::path path = setup.folder.dump();
+  if (setup.restart) {
+    truncate_lammps_dump(path, setup.restart->step);
+  }
+  const FileMode mode = setup.restart ? FileMode::append : FileMode::create;
+  auto writer = std::make_shared<LammpsDumpWriter>(path, DumpLayout::viewer, mode);
+  return [writer, topology](const Snapshot& snapshot) { writer->write(*topology, snapshot); };
+}
+
+FrameObserver::Write vtk_writer(const RunSetup& setup, std::shared_ptr<const Topology> topology) {
+  const std::filesystem::path path = setup.folder.vtk() / "packing.pvd";
+  std::filesystem::create_directories(setup.folder.vtk());
+  auto series =
+      std::make_shared<VtkSeries>(setup.restart ? VtkSeries::go_on(path, setup.restart->step) : VtkSeries(path));
+  return [series, topology](const Snapshot& snapshot) { series->write(*topology, snapshot); };
+}
+
+} // namespace
+
+std::vector<std::int64_t> RunWriters::last_steps() const {
+  std::vector<std::int64_t> steps{table->last_step()};
+  for (const auto& writer : frames) {
+    steps.push_back(writer->last_step());
+  }
+  return steps;
+}
+
+RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, const PackingNumbers& numbers) {
+  RunWriters writers;
+  const OutputPlan& plan = setup.scene.output;
+  const auto schedule = [&](const OutputInterval& every) {
+    return Schedule(every, simulation.strain(), simulation.time());
+  };
+  const std::vector<std::string> columns = run_table_columns();
+  TableWriter table = setup.restart ? TableWriter::go_on(setup.folder.table(), columns, setup.restart->step)
+                                    : TableWriter(setup.folder.table(), columns);
+  writers.table =
+      std::make_unique<TableObserver>(std::move(table), schedule(plan.table), numbers, last_step_of(setup, 0));
+
+  const auto topology = std::make_shared<const Topology>(simulation.packing().topology(false));
+  const auto add = [&](const FrameOutput& output, FrameObserver::Write write) {
+    writers.frames.push_back(std::make_unique<FrameObserver>(
+        schedule(output.every), output.velocities, last_step_of(setup, writers.frames.size() + 1), std::move(write)));
+  };
+  if (plan.trajectory) {
+    add(*plan.trajectory, trajectory_writer(setup, simulation, *plan.trajectory));
+  }
+  if (plan.dump) {
+    add(*plan.dump, dump_writer(setup, topology));
+  }
+  if (plan.vtk) {
+    add(*plan.vtk, vtk_writer(setup, topology));
+  }
+  return writers;
+}
+
+} // namespace boba

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/app/frame_observer.h"
+#include "bpm/app/run_setup.h"
+#include "bpm/app/table_observer.h"
+
+#include <memory>
+#include <vector>
+
+namespace boba {
+
+/// The files a scene asks for, as observers. New ones for a new run; a run that goes on cuts them at its checkpoint.
+struct RunWriters {
+  std::unique_ptr<TableObserver> table;
+  std::vector<std::unique_ptr<FrameObserver>> frames; ///< trajectory, dump, VTK
+
+  /// Step of the last row and of each writer's last frame, as RunSetup::Restart keeps them.
+  std::vector<std::int64_t> last_steps() const;
+};
+
+/// The simulation is in the state that the run starts from.
+/// \throws std::runtime_error when a file cannot be made or does not belong to the checkpoint.
+RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, const PackingNumbers& numbers);
+
+} // namespace boba

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/app/run_quantities.h"
+#include "bpm/app/schedule.h"
+#include "bpm/dynamics/observer.h"
+#include "bpm/io/table.h"
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+namespace boba {
+
+/// Columns of table.csv, in order; each name carries its unit. Source: docs/formats.md, "Table".
+std::vector<std::string> run_table_columns();
+
+/// Writes a row of table.csv at the ends of stages and whenever the schedule says so, each step once.
+class TableObserver : public Observer {
+public:
+  TableObserver(TableWriter writer, const Schedule& schedule, const PackingNumbers& numbers, std::int64_t last_step)
+      : writer_(std::move(writer)), schedule_(schedule), numbers_(numbers), last_step_(last_step),
+        speed_step_(last_step) {}
+
+  void set_shear_rate(double rate) { rate_ = rate; } ///< of the stage that runs, 1/tau
+  bool wants(const StepForecast& forecast) override;
+  void observe(const Simulation& simulation, const StageProgress& progress) override;
+  std::int64_t last_step() const { return last_step_; }
+
+private:
+  double steps_per_second(std::int64_t step);
+
+  using Clock = std::chrono::steady_clock;
+  TableWriter writer_;
+  Schedule schedule_;
+  PackingNumbers numbers_;
+  std::int64_t last_step_, speed_step_;
+  double rate_ = 0.0;
+  Clock::time_point last_time_ = Clock::now();
+};
+
+} // namespace boba

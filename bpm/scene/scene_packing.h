@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/scene/poisson_table.h"
+#include "bpm/scene/scene.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace boba {
+
+/// Told what takes time or deserves a word while a packing is made.
+using Narrator = std::function<void(const std::string&)>;
+
+/// alpha as given, or from the table. \throws InputError outside the table.
+double resolve_alpha(const AlphaChoice& choice, const Material& material, const PoissonTable& table);
+
+/// The packing a scene starts from: templates built or taken from the cache, grains placed; or read from its files.
+/// \throws InputError, std::invalid_argument, std::runtime_error from whatever part refuses.
+Packing make_start(const Scene& scene, const PoissonTable& table, const Narrator& narrate);
+
+/// E / (2 - 2 nu^2) of the grains (k/d), mean over all nodes; empty when an alpha lies outside the table.
+/// Source: docs/notation.md, "Derived numbers".
+std::optional<double> effective_modulus(const Packing& packing, const Material& material, const PoissonTable& table);
+
+/// The stages with every normalised pressure turned into a pressure: P = P~ E / (2 - 2 nu^2).
+/// \throws InputError when one is given and the modulus is unknown.
+std::vector<SceneStage> resolve_pressures(const Scene& scene, std::optional<double> modulus);
+
+} // namespace boba

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/scene/trajectory_start.h"
+
+#include "bpm/io/input_error.h"
+#include "bpm/io/trajectory.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace boba {
+
+namespace {
+
+constexpr double bulk_density = 1.226; // nodes per d^3; docs/notation.md, "Grain"
+
+/// Undeformed networks by template number: bonds of the first grain that has it.
+std::vector<std::shared_ptr<const GrainTemplate>> networks_of(const Topology& topology, const Snapshot& first,
+                                                              const std::filesystem::path& file) {
+  int n_templates = 0;
+  for (const int t : topology.template_index) {
+    if (t < 0) {
+      throw InputError(fmt::format("{}: a grain has the template number {}", file.string(), t));
+    }
+    n_templates = std::max(n_templates, t + 1);
+  }
+  if (n_templates > topology.n_grains()) {
+    throw InputError(fmt::format("{}: more templates than grains", file.string()));
+  }
+  std::vector<GrainTemplate> networks(n_templates);
+  std::vector<int> model(n_templates, -1);
+  for (int g = topology.n_grains() - 1; g >= 0; --g) {
+    model[topology.template_index[g]] = g;
+  }
+  const std::vector<int> grain_of = topology.grain_of_node();
+  for (const Topology::Pair& bond : topology.bonds) {
+    const int g = grain_of[bond.i];
+    const int t = topology.template_index[g];
+    if (model[t] == g) {
+      const auto i = static_cast<int>(bond.i - topology.first_node[g]),
+                 j = static_cast<int>(bond.j - topology.first_node[g]);
+      networks[t].bonds.push_back({std::min(i, j), std::max(i, j), bond.r0});
+    }
+  }
+  std::vector<std::shared_ptr<const GrainTemplate>> result;
+  for (int t = 0; t < n_templates; ++t) {
+    if (model[t] < 0) {
+      throw InputError(fmt::format("{}: no grain has the template number {}", file.string(), t));
+    }
+    const auto nodes = first.nodes_of(topology, model[t]);
+    networks[t].position.assign(nodes.begin(), nodes.end());
+    for (Vector3& x : networks[t].position) {
+      x -= first.grain_centre[model[t]];
+    }
+    std::sort(networks[t].bonds.begin(), networks[t].bonds.end(),
+              [](const Bond& a, const Bond& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
+    networks[t].reference_volume = networks[t].n_nodes() / bulk_density;
+    result.push_back(std::make_shared<const GrainTemplate>(std::move(networks[t])));
+  }
+  return result;
+}
+
+} // namespace
+
+Packing read_trajectory_packing(const std::filesystem::path& file, int frame, std::optional<double> alpha) {
+  const TrajectoryReader reader(file);
+  const Topology& topology = reader.topology();
+  Snapshot state = reader.snapshot(frame);
+  Packing packing;
+  packing.box = state.box;
+  packing.templates = networks_of(topology, reader.snapshot(0), file);
+  for (int g = 0; g < topology.n_grains(); ++g) {
+    packing.grains.push_back(
+        {topology.template_index[g], topology.species[g], alpha.value_or(topology.alpha[g]), topology.molecule[g]});
+  }
+  packing.id = topology.id;
+  packing.position = std::move(state.position);
+  packing.velocity = std::move(state.velocity);
+  packing.velocity.resize(packing.position.size(), Vector3::Zero());
+  return packing;
+}
+
+} // namespace boba

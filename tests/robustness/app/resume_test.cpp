@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A run that was stopped, killed or given another number of threads ends as one that was left alone, bit for bit.
+#include "bpm/io/checkpoint.h"
+#include "bpm/io/trajectory.h"
+#include "tests/robustness/app/small_scene.h"
+
+#include <csignal>
+#include <gtest/gtest.h>
+
+namespace boba::test {
+namespace {
+
+void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b) {
+  EXPECT_EQ(table_without_speed(a / "table.csv"), table_without_speed(b / "table.csv"));
+  const TrajectoryReader first(a / "trajectory.h5"), second(b / "trajectory.h5");
+  ASSERT_EQ(first.steps(), second.steps());
+  for (std::int64_t frame = 0; frame < first.n_frames(); ++frame) {
+    const Snapshot x = first.snapshot(frame), y = second.snapshot(frame);
+    EXPECT_EQ(x.position, y.position) << "frame " << frame;
+    EXPECT_EQ(x.velocity, y.velocity) << "frame " << frame;
+    EXPECT_EQ(x.grain_stress, y.grain_stress) << "frame " << frame;
+  }
+  const CheckpointData end = latest_checkpoint(a / "checkpoints").data,
+                       other = latest_checkpoint(b / "checkpoints").data;
+  EXPECT_EQ(end.real, other.real);
+  EXPECT_EQ(end.integer, other.integer);
+}
+
+/// The same scene left alone, in `folder`/alone.
+void run_alone(const TemporaryFolder& folder, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> command{"run", "scene.toml", "--output", "alone"};
+  command.insert(command.end(), more.begin(), more.end());
+  const ProgramResult result = boba(command, folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+}
+
+TEST(Resume, ThreadsDoNotMatter) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  run_alone(folder);
+  for (const char* threads : {"2", "3"}) {
+    const ProgramResult result = boba({"run", "scene.toml", "--threads", threads, "--output", threads}, folder);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    expect_same_run(folder / "alone", folder / threads);
+  }
+}
+
+TEST(Resume, AfterAWallTimeLimit) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  run_alone(folder);
+  ProgramResult result = boba({"run", "scene.toml", "--wall-time", "0.05"}, folder);
+  int n_stops = 0;
+  while (result.exit_code == 75 && n_stops < 200) {
+    EXPECT_NE(result.out.find("wall-time limit"), std::string::npos) << result.out;
+    ++n_stops;
+    result = boba({"resume", "out", "--wall-time", n_stops < 5 ? "0.05" : "1"}, folder);
+  }
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_GE(n_stops, 1);
+  expect_same_run(folder / "alone", folder / "out");
+}
+
+TEST(Resume, AfterSignals) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  run_alone(folder, {"--set", "stage.2.strain=6"});
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const std::string out = std::to_string(signal);
+    const ProgramResult stopped = boba({"run", "scene.toml", "--set", "stage.2.strain=6", "--output", out}, folder,
+                                       Disturbance{0.1, signal, (folder / out / "table.csv").string()});
+    EXPECT_EQ(stopped.exit_code, 75) << stopped.err;
+    const ProgramResult resumed = boba({"resume", out}, folder);
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    expect_same_run(folder / "alone", folder / out);
+  }
+}
+
+TEST(Resume, AfterBeingKilled) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  const std::vector<std::string> often{"--set", "output.checkpoint.every_time=15", "--set", "stage.2.strain=1.5"};
+  run_alone(folder, often);
+  std::vector<std::string> run{"run", "scene.toml", "--output", "killed"};
+  run.insert(run.end(), often.begin(), often.end());
+  ProgramResult result = boba(run, folder, Disturbance{0.15, SIGKILL, (folder / "killed/checkpoints").string()});
+  for (int i = 0; result.signal == SIGKILL && i < 12; ++i) {
+    result = boba({"resume", "killed"}, folder, Disturbance{0.1 + 0.03 * i, SIGKILL});
+    ASSERT_TRUE(result.signal == SIGKILL || result.exit_code == 0) << result.err;
+  }
+  result = boba({"resume", "killed"}, folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  expect_same_run(folder / "alone", folder / "killed");
+}
+
+std::vector<std::filesystem::path> checkpoints_of(const std::filesystem::path& run) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(run / "checkpoints")) {
+    files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+TEST(Resume, RefusesADamagedCheckpointByNameAndTakesTheOlderOne) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  run_alone(folder);
+  const auto files = checkpoints_of(folder / "alone");
+  ASSERT_EQ(files.size(), 2U);
+  std::string altered = content_of(files[1]);
+  altered[altered.size() / 2] ^= 4;
+  std::ofstream(files[1], std::ios::binary) << altered;
+  const std::string table = table_without_speed(folder / "alone/table.csv");
+  const ProgramResult resumed = boba({"resume", "alone"}, folder);
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_NE(resumed.err.find(files[1].filename().string()), std::string::npos) << resumed.err;
+  EXPECT_NE(resumed.err.find(files[0].filename().string()), std::string::npos) << resumed.err;
+  EXPECT_EQ(table_without_speed(folder / "alone/table.csv"), table);
+}
+
+TEST(Resume, WithoutAWholeCheckpointIsWrongInput) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  run_alone(folder, {"--set", "stage.2.strain=0.01"});
+  for (const auto& file : checkpoints_of(folder / "alone")) {
+    std::filesystem::resize_file(file, 1000);
+  }
+  const ProgramResult resumed = boba({"resume", "alone"}, folder);
+  EXPECT_EQ(resumed.exit_code, 2);
+  EXPECT_NE(resumed.err.find("checkpoint-"), std::string::npos) << resumed.err;
+}
+
+TEST(Resume, AnotherInstructionSetAsksForLeave) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  run_alone(folder, {"--set", "stage.2.strain=0.01"});
+  CheckpointData data = latest_checkpoint(folder / "alone/checkpoints").data;
+  data.text["instruction_set"] = "abacus";
+  write_checkpoint(folder / "alone/checkpoints", data);
+  const ProgramResult refused = boba({"resume", "alone"}, folder);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("abacus"), std::string::npos) << refused.err;
+  EXPECT_EQ(boba({"resume", "alone", "--allow-other-isa"}, folder).exit_code, 0);
+}
+
+TEST(Resume, AScenesInputFilesMayBeGone) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  run_alone(folder, {"--set", "stage.2.strain=0.05"});
+  folder.file("next.toml", "[run]\nthreads = 1\n[start]\ntrajectory = \"alone/trajectory.h5\"\n[output.trajectory]\n"
+                           "every_time = 50\n[[stage]]\ntype = \"shear\"\nrate = -1e-3\nstrain = 0.2\n");
+  ASSERT_EQ(boba({"run", "next.toml", "--output", "whole"}, folder).exit_code, 0);
+  ASSERT_EQ(boba({"run", "next.toml", "--output", "cut", "--wall-time", "0.02"}, folder).exit_code, 75);
+  std::filesystem::rename(folder / "alone", folder / "elsewhere");
+  const ProgramResult resumed = boba({"resume", "cut"}, folder);
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  expect_same_run(folder / "whole", folder / "cut");
+}
+
+} // namespace
+} // namespace boba::test
