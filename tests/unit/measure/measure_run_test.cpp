@@ -100,7 +100,7 @@ MeasureRunOptions all_of(const CrystalRun& run) {
   MeasureRunOptions options;
   options.run = run.folder;
   options.plan.kinds = measure_kinds({"all"});
-  options.plan.scattering.q_max = 0.6;
+  options.plan.scattering.q_max = 1.0;
   options.plan.facet_sensitivity = true;
   return options;
 }
@@ -150,7 +150,10 @@ TEST(MeasureRun, SpaceFillingCrystalHasItsKnownNumbers) {
   EXPECT_NEAR(grain_motion.at("displacement_x_d")[50], 0.0, 1e-9);
 
   const auto scattering = read_table(folder / "scattering.csv");
-  EXPECT_GT(scattering.at("q_1/d").size(), 4u);
+  ASSERT_GE(scattering.at("q_1/d").size(), 8u);
+  // Equal grains on fcc (cube edge 6 sqrt(2)): no vector below the first Bragg peak at 2 pi sqrt(3) / edge = 1.28 scatters.
+  EXPECT_NEAR(scattering.at("intensity")[0], 0.0, 1e-10);
+  EXPECT_GT(scattering.at("form_factor")[0], 1.0);
   EXPECT_TRUE(fs::exists(folder / "averages.json"));
 }
 
