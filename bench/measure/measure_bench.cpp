@@ -73,7 +73,7 @@ void hulls_of_a_frame(benchmark::State& state) {
     benchmark::DoNotOptimize(kept.data());
   }
 }
-BENCHMARK(hulls_of_a_frame)->Unit(benchmark::kSecond)->Iterations(1)->UseRealTime();
+BENCHMARK(hulls_of_a_frame)->Unit(benchmark::kSecond)->Iterations(1)->MeasureProcessCPUTime()->UseRealTime();
 
 /// The parts of one grain's share of it.
 void one_hull(benchmark::State& state) {
@@ -110,7 +110,7 @@ void packing_fraction_to_a_thousandth(benchmark::State& state) {
   state.counters["error"] = phi.both.standard_error;
   state.counters["points"] = static_cast<double>(phi.n_points);
 }
-BENCHMARK(packing_fraction_to_a_thousandth)->Unit(benchmark::kSecond)->Iterations(1)->UseRealTime();
+BENCHMARK(packing_fraction_to_a_thousandth)->Unit(benchmark::kSecond)->Iterations(1)->MeasureProcessCPUTime()->UseRealTime();
 
 /// S(q) of 64 grains of 303 nodes up to q = 3 / d.
 void scattering_of_64_small_grains(benchmark::State& state) {
@@ -121,7 +121,7 @@ void scattering_of_64_small_grains(benchmark::State& state) {
       static_cast<double>(small().nodes.size()) * static_cast<double>(ReciprocalLattice(small().box, 3.0).n_vectors());
   state.counters["node_vectors_per_s"] = benchmark::Counter(work, benchmark::Counter::kIsIterationInvariantRate);
 }
-BENCHMARK(scattering_of_64_small_grains)->Unit(benchmark::kSecond)->UseRealTime();
+BENCHMARK(scattering_of_64_small_grains)->Unit(benchmark::kSecond)->MeasureProcessCPUTime()->UseRealTime();
 
 /// S(q) of 5.3 million nodes: the cost is nodes x wave vectors, and those grow as q_max^3; argument: q_max in 0.01 / d.
 void scattering_of_1024_grains(benchmark::State& state) {
@@ -134,7 +134,7 @@ void scattering_of_1024_grains(benchmark::State& state) {
   state.counters["vectors"] = vectors;
   state.counters["node_vectors_per_s"] = benchmark::Counter(work, benchmark::Counter::kIsIterationInvariantRate);
 }
-BENCHMARK(scattering_of_1024_grains)->Arg(20)->Arg(40)->Unit(benchmark::kSecond)->Iterations(1)->UseRealTime();
+BENCHMARK(scattering_of_1024_grains)->Arg(20)->Arg(40)->Unit(benchmark::kSecond)->Iterations(1)->MeasureProcessCPUTime()->UseRealTime();
 
 void order_of_1024_grains(benchmark::State& state) {
   const auto centres = grain_centres(large().grains());
@@ -142,13 +142,13 @@ void order_of_1024_grains(benchmark::State& state) {
     benchmark::DoNotOptimize(bond_order(solid_angle_neighbours(large().box, centres)).data());
   }
 }
-BENCHMARK(order_of_1024_grains)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(order_of_1024_grains)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 void contact_network_of_1024_grains(benchmark::State& state) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(contact_network(large().box, large().grains()).size());
   }
 }
-BENCHMARK(contact_network_of_1024_grains)->Unit(benchmark::kSecond)->Iterations(1)->UseRealTime();
+BENCHMARK(contact_network_of_1024_grains)->Unit(benchmark::kSecond)->Iterations(1)->MeasureProcessCPUTime()->UseRealTime();
 
 } // namespace

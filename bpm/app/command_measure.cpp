@@ -57,11 +57,13 @@ CommandBody add_measure_command(CLI::App& app) {
   auto a = std::make_shared<MeasureArguments>();
   MeasureRunOptions& options = a->options;
   app.add_option("run", options.run, "output folder of a run (finished or running), or a trajectory file")->required();
-  app.add_option("--what", a->what, fmt::format("all, or some of {}; separated by commas", fmt::join(measure_names(), ", ")))
+  app.add_option("--what", a->what,
+                 fmt::format("all, or some of {}; separated by commas", fmt::join(measure_names(), ", ")))
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--every", options.every, "every so many frames")->capture_default_str();
-  app.add_option("--every-strain", options.every_strain, "instead: a frame whenever the strain has changed by this much");
+  app.add_option("--every-strain", options.every_strain,
+                 "instead: a frame whenever the strain has changed by this much");
   app.add_option("--frame", options.only_frame, "one frame alone; negative counts from the end");
   app.add_option("--window", a->window, "strain window of the averages: FIRST LAST")->expected(2);
   app.add_option("--neighbours", a->neighbours, "rule for neighbours of order and motion")

@@ -11,7 +11,8 @@ from .run import open_run
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="boba plot", description="Panels and pictures of one or several runs.")
     parser.add_argument("runs", nargs="+", help="output folders of runs; several are drawn together")
-    parser.add_argument("--output", help="folder of the pictures (default: plots in the first run's folder)")
+    parser.add_argument("--output", help="folder of the pictures, or a PNG for the sheet of all panels alone "
+                        "(default: plots in the first run's folder, and the sheet as plot.png beside it)")
     parser.add_argument("--window", nargs=2, type=float, default=(1.0, 5.0), metavar=("FIRST", "LAST"),
                         help="strain window of averages (default: 1 5)")
     parser.add_argument("--labels", nargs="+", help="one a run (default: names of the folders)")
@@ -21,7 +22,7 @@ def parse(arguments):
     return parser.parse_args(arguments)
 
 
-def draw_panels(runs, window, folder):
+def draw_panels(runs, window, folder, sheet_path):
     import matplotlib
 
     matplotlib.use("Agg")
@@ -38,6 +39,8 @@ def draw_panels(runs, window, folder):
         axes.axis("off")
     for (name, draw), axes in zip(chosen, grid.flat):
         draw(axes)
+        if folder is None:
+            continue
         single, own = plt.subplots(figsize=(5.2, 3.8))
         draw(own)
         single.tight_layout()
@@ -45,7 +48,7 @@ def draw_panels(runs, window, folder):
         single.savefig(written[-1], dpi=130)
         plt.close(single)
     sheet.tight_layout()
-    written.append(folder / "panels.png")
+    written.append(sheet_path)
     sheet.savefig(written[-1], dpi=110)
     return written
 
@@ -76,11 +79,15 @@ def main(arguments=None):
     except FileNotFoundError as error:
         print(f"boba plot: {error}", file=sys.stderr)
         return 2
-    folder = pathlib.Path(chosen.output) if chosen.output else runs[0][1].folder / "plots"
-    folder.mkdir(parents=True, exist_ok=True)
-    written = draw_panels(runs, tuple(chosen.window), folder)
+    if chosen.output and chosen.output.endswith(".png"):
+        folder, sheet = None, pathlib.Path(chosen.output)
+    else:
+        folder = pathlib.Path(chosen.output) if chosen.output else runs[0][1].folder / "plots"
+        sheet = (folder if chosen.output else runs[0][1].folder) / "plot.png"
+        folder.mkdir(parents=True, exist_ok=True)
+    written = draw_panels(runs, tuple(chosen.window), folder, sheet)
     if chosen.pictures:
-        written += draw_pictures(runs, chosen.frame, chosen.hulls, folder)
+        written += draw_pictures(runs, chosen.frame, chosen.hulls, folder or sheet.parent)
     if not written:
         print("boba plot: nothing to draw: no table.csv that varies and no measures (see boba measure)", file=sys.stderr)
         return 1
