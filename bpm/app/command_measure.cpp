@@ -16,7 +16,7 @@ struct MeasureArguments {
   std::string neighbours = "solid-angle";
 };
 
-ExitCode measure(MeasureArguments a) {
+ExitCode measure_stored_frames(MeasureArguments a) {
   a.options.plan.kinds = measure_kinds(a.what);
   a.options.plan.neighbours = a.neighbours == "voronoi" ? NeighbourRule::voronoi : NeighbourRule::solid_angle;
   if (!a.window.empty()) {
@@ -74,7 +74,7 @@ CommandBody add_measure_command(CLI::App& app) {
   app.add_flag("--force", options.force, "replace tables that are there");
   add_numbers(app, options.plan);
   app.footer("Tables and columns: docs/formats-measure.md.");
-  return [a] { return measure(*a); };
+  return [a] { return measure_stored_frames(*a); };
 }
 
 } // namespace boba

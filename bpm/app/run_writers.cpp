@@ -107,9 +107,9 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
   if (plan.vtk) {
     add(*plan.vtk, vtk_writer(setup, topology));
   }
-  for (const SceneMeasure& measure : setup.scene.measures) {
+  for (const SceneMeasure& entry : setup.scene.measures) {
     // Velocities tell the kinetic part of the stress apart.
-    add({measure.every, measure.plan.has(MeasureKind::stress)}, measure_writer(setup, simulation, measure.plan));
+    add({entry.every, entry.plan.has(MeasureKind::stress)}, measure_writer(setup, simulation, entry.plan));
   }
   return writers;
 }
