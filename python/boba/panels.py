@@ -97,6 +97,39 @@ def stress_ratio(axes, runs):
     axes.legend(fontsize=7)
 
 
+def _abscissa(table):
+    """Strain from the start of the shear, or time when nothing shears."""
+    if np.ptp(table["strain"]) > 0:
+        shears = np.flatnonzero(np.diff(table["strain"]) != 0)
+        return slice(max(shears[0], 0), None), "strain", "strain"
+    return slice(None), "time_tau", "time (tau)"
+
+
+def density(axes, runs):
+    """Packing fraction: of the undeformed grains' volumes, and the measured one where there is one."""
+    for (label, run), colour in zip(runs, COLOURS):
+        rows, column, name = _abscissa(run.table)
+        axes.plot(run.table[column][rows], run.table["phi_reference"][rows], "--", lw=0.8, color=colour,
+                  label=f"{label}: undeformed volumes")
+        if has(run, "packing_fraction"):
+            phi = run.measure("packing_fraction")
+            inside = phi[column] >= run.table[column][rows].min()
+            axes.errorbar(phi[column][inside], phi["phi"][inside], phi["phi_error"][inside], fmt="o-", ms=3, lw=1,
+                          color=colour, label=f"{label}: nodes and hulls")
+        _label(axes, name, "phi", "packing fraction")
+    axes.legend(fontsize=7)
+
+
+def pressure(axes, runs):
+    for (label, run), colour in zip(runs, COLOURS):
+        rows, column, name = _abscissa(run.table)
+        known = np.isfinite(run.table["P_normalised"]).any()
+        axes.plot(run.table[column][rows], run.table["P_normalised" if known else "P_k/d"][rows], lw=0.8, color=colour,
+                  label=label)
+        _label(axes, name, "normalised pressure" if known else "P (k/d)", "pressure")
+    axes.legend(fontsize=7)
+
+
 def _ribbon(axes, runs, mean, deviation, trace, undeformed):
     for (label, run), colour in zip(runs, COLOURS):
         shape = run.measure("shape")
@@ -239,6 +272,8 @@ def available(runs, window):
     compressed = [(label, run) for label, run in tables if np.ptp(run.table["phi_reference"]) > 0.02]
     offer("compaction", compaction, compressed)
     offer("stress_ratio", stress_ratio, sheared)
+    offer("packing_fraction", density, tables)
+    offer("pressure", pressure, tables)
     offer("structure_factor", structure_factor, with_tables("scattering"))
     offer("form_factor", form_factor, with_tables("scattering"))
     offer("volume", volume, with_tables("shape", "grains"))

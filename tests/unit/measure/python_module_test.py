@@ -25,7 +25,7 @@ def write_table(path, columns):
 def make_run(folder):
     strain = [0.01 * k for k in range(600)]
     write_table(folder / "table.csv", {
-        "step": list(range(600)), "strain": strain, "mu": [0.1 + 0.01 * (k % 2) for k in range(600)],
+        "step": list(range(600)), "time_tau": [10.0 * k for k in range(600)], "strain": strain, "mu": [0.1 + 0.01 * (k % 2) for k in range(600)],
         "phi_reference": [0.9] * 600, "P_normalised": [None] * 600, "P_k/d": [0.1] * 600,
         "inertial_number": [1e-3] * 600})
     (folder / "measures").mkdir()
@@ -129,7 +129,7 @@ class Module(unittest.TestCase):
         self.assertEqual(plot.main([str(self.folder), "--pictures", "--hulls", "0", "1"]), 0)
         names = {path.stem for path in (self.folder / "plots").glob("*.png")}
         self.assertTrue((self.folder / "plot.png").exists())
-        self.assertLessEqual({"stress_ratio", "volume_distribution", "rheology", "grains", "hulls"}, names)
+        self.assertLessEqual({"stress_ratio", "packing_fraction", "pressure", "volume_distribution", "rheology", "grains", "hulls"}, names)
         self.assertNotIn("crystal_classes", names)
         self.assertEqual(plot.main([str(self.folder / "nothing")]), 2)
 
