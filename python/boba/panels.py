@@ -16,6 +16,21 @@ def _label(axes, x, y, title):
     axes.set_title(title, fontsize=10, loc="left")
 
 
+def _abscissa(table):
+    """Strain from the start of the shear, or time when nothing shears."""
+    if np.ptp(table["strain"]) > 0:
+        shears = np.flatnonzero(np.diff(table["strain"]) != 0)
+        return slice(max(shears[0], 0), None), "strain", "strain"
+    return slice(None), "time_tau", "time (tau)"
+
+
+def _first_and_last(run, name):
+    """Step at the start of the shear (of the run, when nothing shears) and the last step."""
+    table = run.measure(name)
+    rows = _abscissa(table)[0]
+    return int(table["step"][rows][0]), int(table["step"][-1])
+
+
 def _chosen_steps(run, name, n=4):
     """First, last and some frames between them."""
     steps = run.steps(name)
@@ -29,7 +44,7 @@ def _strain_of(run, name, step):
 def compaction(axes, runs):
     """Packing fraction against normalised pressure, with the 3/2 law fitted to its lower part."""
     for (label, run), colour in zip(runs, COLOURS):
-        table = run.table
+        table = {name: values[: _abscissa(run.table)[0].start or None] for name, values in run.table.items()}
         phi, name = table["phi_reference"], "phi of the undeformed grains"
         pressure = table["P_normalised"]
         if not np.isfinite(pressure).any():
@@ -37,9 +52,10 @@ def compaction(axes, runs):
         if has(run, "packing_fraction"):
             measured = run.measure("packing_fraction")
             row = {step: k for k, step in enumerate(table["step"])}
-            found = [k for k, step in enumerate(measured["step"]) if step in row]
-            phi, name = measured["phi"][found], "phi"
-            pressure = pressure[[row[measured["step"][k]] for k in found]]
+            found = [k for k, step in enumerate(measured["step"]) if step in row and pressure[row[step]] > 0]
+            if len(found) > 3:
+                phi, name = measured["phi"][found], "phi"
+                pressure = pressure[[row[measured["step"][k]] for k in found]]
         good = (pressure > 0) & np.isfinite(phi)
         if good.sum() < 2:
             continue
@@ -92,17 +108,10 @@ def form_factor(axes, runs, radius=None):
 
 def stress_ratio(axes, runs):
     for (label, run), colour in zip(runs, COLOURS):
-        axes.plot(run.table["strain"], run.table["mu"], lw=0.8, color=colour, label=label)
+        rows = _abscissa(run.table)[0]
+        axes.plot(run.table["strain"][rows], run.table["mu"][rows], lw=0.8, color=colour, label=label)
     _label(axes, "strain", "mu", "stress ratio")
     axes.legend(fontsize=7)
-
-
-def _abscissa(table):
-    """Strain from the start of the shear, or time when nothing shears."""
-    if np.ptp(table["strain"]) > 0:
-        shears = np.flatnonzero(np.diff(table["strain"]) != 0)
-        return slice(max(shears[0], 0), None), "strain", "strain"
-    return slice(None), "time_tau", "time (tau)"
 
 
 def density(axes, runs):
@@ -133,11 +142,12 @@ def pressure(axes, runs):
 def _ribbon(axes, runs, mean, deviation, trace, undeformed):
     for (label, run), colour in zip(runs, COLOURS):
         shape = run.measure("shape")
-        x, y, s = shape["strain"], shape[mean], shape[deviation]
+        rows, column, name = _abscissa(shape)
+        x, y, s = (shape[key][rows] for key in (column, mean, deviation))
         axes.fill_between(x, y - s, y + s, color=colour, alpha=0.2, lw=0)
         axes.plot(x, y, "-", color=colour, lw=1.2, label=label)
-        strains, values = run.grain_traces(trace)
-        axes.plot(strains, values[:, 0], "--", color=colour, lw=0.8)
+        axes.plot(x, run.grain_traces(trace)[1][rows, 0], "--", color=colour, lw=0.8)
+        axes.set_xlabel(name)
         if np.isfinite(shape[undeformed][0]):
             axes.axhline(shape[undeformed][0], color=colour, lw=0.6, ls=":")
     axes.legend(fontsize=7)
@@ -146,18 +156,18 @@ def _ribbon(axes, runs, mean, deviation, trace, undeformed):
 def volume(axes, runs):
     """Mean grain volume: ribbon one standard deviation, dashed one grain, dotted undeformed."""
     _ribbon(axes, runs, "volume_mean_d3", "volume_deviation_d3", "volume_d3", "undeformed_volume_d3")
-    _label(axes, "strain", "grain volume (d^3)", "volume: mean, deviation, one grain (dashed), undeformed (dotted)")
+    _label(axes, axes.get_xlabel(), "grain volume (d^3)", "volume (dashed: one grain, dotted: undeformed)")
 
 
 def asphericity(axes, runs):
     _ribbon(axes, runs, "asphericity_mean", "asphericity_deviation", "asphericity", "undeformed_asphericity")
-    _label(axes, "strain", "asphericity", "asphericity: mean, deviation, one grain (dashed), undeformed (dotted)")
+    _label(axes, axes.get_xlabel(), "asphericity", "asphericity (dashed: one grain, dotted: undeformed)")
 
 
 def _distribution(axes, runs, column, bins=25):
     for (label, run), colour in zip(runs, COLOURS):
-        steps = run.steps("grains")
-        for step, style in zip((steps[0], steps[-1]), (":", "-")):
+        steps = _first_and_last(run, "grains")
+        for step, style in zip(steps, (":", "-")):
             values = run.rows("grains", step)[column]
             counts, edges = np.histogram(values, bins=bins)
             axes.stairs(counts, edges, color=colour, ls=style, lw=1.2,
@@ -182,7 +192,7 @@ def facet_shares(axes, runs):
     labels, shares, base = [], [], []
     for label, run in runs:
         shape = run.measure("shape")
-        for k in sorted({0, len(shape["step"]) - 1}):
+        for k in sorted({_abscissa(shape)[0].start or 0, len(shape["step"]) - 1}):
             labels.append(f"{label}\nstrain {shape['strain'][k]:.3g}")
             shares.append(shape["faceted_share"][k])
             base.append(shape["undeformed_faceted_share"][k])
@@ -196,10 +206,11 @@ def facet_shares(axes, runs):
 
 
 def facet_counts(axes, runs):
-    bins = np.arange(-0.5, 25.5)
+    most = max(run.measure("grains")["facets"].max() for _, run in runs)
+    bins = np.arange(-0.5, max(25.0, most + 2.0))
     for (label, run), colour in zip(runs, COLOURS):
-        steps = run.steps("grains")
-        for step, style in zip((steps[0], steps[-1]), (":", "-")):
+        steps = _first_and_last(run, "grains")
+        for step, style in zip(steps, (":", "-")):
             counts, edges = np.histogram(run.rows("grains", step)["facets"], bins=bins)
             axes.stairs(counts / max(counts.sum(), 1), edges, color=colour, ls=style, lw=1.2,
                         label=f"{label} strain {_strain_of(run, 'grains', step):.3g}")
@@ -213,27 +224,30 @@ def facet_counts(axes, runs):
 def crystal_classes(axes, runs):
     for (label, run), colour in zip(runs, COLOURS):
         order = run.measure("order")
+        rows, x, name = _abscissa(order)
         for column, style in (("fcc_share", "-"), ("hcp_share", "--"), ("bcc_share", ":")):
-            axes.plot(order["strain"], order[column], style, color=colour, lw=1, label=f"{label} {column[:3]}")
+            axes.plot(order[x][rows], order[column][rows], style, color=colour, lw=1, label=f"{label} {column[:3]}")
     axes.set_ylim(-0.02, 1.02)
-    _label(axes, "strain", "share of grains", "crystal classes")
+    _label(axes, name, "share of grains", "crystal classes")
     axes.legend(fontsize=7)
 
 
 def coordination(axes, runs):
     for (label, run), colour in zip(runs, COLOURS):
         table = run.measure("coordination")
-        axes.plot(table["strain"], table["contacts_per_grain"], color=colour, lw=1, label=label)
-        axes.plot(table["strain"], table["contacts_without_rattlers"], "--", color=colour, lw=1)
-    _label(axes, "strain", "contacts a grain", "coordination (dashed: without rattlers)")
+        rows, x, name = _abscissa(table)
+        axes.plot(table[x][rows], table["contacts_per_grain"][rows], color=colour, lw=1, label=label)
+        axes.plot(table[x][rows], table["contacts_without_rattlers"][rows], "--", color=colour, lw=1)
+    _label(axes, name, "contacts a grain", "coordination (dashed: without rattlers)")
     axes.legend(fontsize=7)
 
 
 def non_affine(axes, runs):
     for (label, run), colour in zip(runs, COLOURS):
         table = run.measure("motion")
-        axes.plot(table["strain"], table["non_affine_square_d2"], color=colour, lw=1, label=label)
-    _label(axes, "strain", "mean square displacement (d^2)", "non-affine motion")
+        rows, x, name = _abscissa(table)
+        axes.plot(table[x][rows], table["non_affine_square_d2"][rows], color=colour, lw=1, label=label)
+    _label(axes, name, "mean square displacement (d^2)", "non-affine motion")
     axes.legend(fontsize=7)
 
 
