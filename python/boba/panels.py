@@ -37,8 +37,11 @@ def _chosen_steps(run, name, n=4):
     return steps[np.unique(np.linspace(0, len(steps) - 1, min(n, len(steps))).astype(int))]
 
 
-def _strain_of(run, name, step):
-    return run.rows(name, step)["strain"][0]
+def _when(run, name, step):
+    """Where the run was: strain, or time when nothing shears."""
+    rows = run.rows(name, step)
+    sheared = np.ptp(run.measure(name)["strain"]) > 0
+    return f"strain {rows['strain'][0]:.3g}" if sheared else f"time {rows['time_tau'][0]:.4g}"
 
 
 def compaction(axes, runs):
@@ -65,7 +68,8 @@ def compaction(axes, runs):
             # P = a (phi - phi_c)^(3/2)  <=>  P^(2/3) is linear in phi.
             slope, offset = np.polyfit(phi[low], pressure[low] ** (2 / 3), 1)
             if slope > 0:
-                x = np.geomspace(pressure[good].min(), 1e-1, 100)
+                x = np.geomspace(pressure[good].min(), 1e-1, 200)
+                x = x[(x ** (2 / 3) - offset) / slope < phi[good].max()]
                 axes.plot(x, (x ** (2 / 3) - offset) / slope, "--", color=colour, lw=1,
                           label=f"3/2 law, phi_c = {-offset / slope:.3f}")
         _label(axes, "normalised pressure", name, "compaction")
@@ -79,7 +83,7 @@ def structure_factor(axes, runs):
         for step, shade in zip(_chosen_steps(run, "scattering"), (1.0, 0.75, 0.5, 0.3)):
             rows = run.rows("scattering", step)
             axes.plot(rows["q_1/d"], rows["structure"], lw=1, color=COLOURS[k % 6], alpha=shade,
-                      label=f"{label} strain {rows['strain'][0]:.3g}")
+                      label=f"{label} {_when(run, 'scattering', step)}")
     _label(axes, "q (1/d)", "S(q)", "structure factor")
     axes.legend(fontsize=7)
 
@@ -90,7 +94,7 @@ def form_factor(axes, runs, radius=None):
         for step, shade in zip(_chosen_steps(run, "scattering", 3), (1.0, 0.6, 0.35)):
             rows = run.rows("scattering", step)
             axes.plot(rows["q_1/d"], rows["form_factor"], lw=1, color=COLOURS[k % 6], alpha=shade,
-                      label=f"{label} strain {rows['strain'][0]:.3g}")
+                      label=f"{label} {_when(run, 'scattering', step)}")
         if radius is None and has(run, "shape"):
             volume = run.measure("shape")["undeformed_volume_d3"][0]
             radius = (3 * volume / (4 * np.pi)) ** (1 / 3) if np.isfinite(volume) else None
@@ -171,7 +175,7 @@ def _distribution(axes, runs, column, bins=25):
             values = run.rows("grains", step)[column]
             counts, edges = np.histogram(values, bins=bins)
             axes.stairs(counts, edges, color=colour, ls=style, lw=1.2,
-                        label=f"{label} strain {_strain_of(run, 'grains', step):.3g}")
+                        label=f"{label} {_when(run, 'grains', step)}")
             if steps[0] == steps[-1]:
                 break
     axes.legend(fontsize=7)
@@ -193,7 +197,7 @@ def facet_shares(axes, runs):
     for label, run in runs:
         shape = run.measure("shape")
         for k in sorted({_abscissa(shape)[0].start or 0, len(shape["step"]) - 1}):
-            labels.append(f"{label}\nstrain {shape['strain'][k]:.3g}")
+            labels.append(f"{label}\n{_when(run, 'shape', shape['step'][k])}")
             shares.append(shape["faceted_share"][k])
             base.append(shape["undeformed_faceted_share"][k])
     x = np.arange(len(labels))
@@ -213,7 +217,7 @@ def facet_counts(axes, runs):
         for step, style in zip(steps, (":", "-")):
             counts, edges = np.histogram(run.rows("grains", step)["facets"], bins=bins)
             axes.stairs(counts / max(counts.sum(), 1), edges, color=colour, ls=style, lw=1.2,
-                        label=f"{label} strain {_strain_of(run, 'grains', step):.3g}")
+                        label=f"{label} {_when(run, 'grains', step)}")
             if steps[0] == steps[-1]:
                 break
     axes.axvline(12, color="k", lw=0.5, ls="--")
