@@ -85,6 +85,38 @@ void one_hull(benchmark::State& state) {
 }
 BENCHMARK(one_hull)->Unit(benchmark::kMillisecond);
 
+/// Nodes of a disordered crystal at the bulk's density within 10 d of a point: a grain with a cut surface has far fewer
+/// hull vertices than the smooth ones of the file.
+std::vector<Vector3> cut_grain() {
+  constexpr double edge = 1.4833; // of the fcc cube at 1.226 / d^3
+  std::vector<Vector3> nodes;
+  for (int i = 0; i < 24 * 24 * 24 * 4; ++i) {
+    const int site = i % 4, cell = i / 4;
+    const Vector3 basis(site == 1 || site == 2 ? 0.5 : 0.0, site == 1 || site == 3 ? 0.5 : 0.0, site >= 2 ? 0.5 : 0.0);
+    const auto u = random_point(2, i);
+    const Vector3 x = edge * (Vector3(cell % 24 - 12.1, cell / 24 % 24 - 12.2, cell / 576 - 12.3) + basis) +
+                      0.4 * Vector3(u[0] - 0.5, u[1] - 0.5, u[2] - 0.5);
+    if (x.norm() < 10.0) {
+      nodes.push_back(x);
+    }
+  }
+  return nodes;
+}
+
+void one_cut_grain_hull_shape_and_facets(benchmark::State& state) {
+  const std::vector<Vector3> nodes = cut_grain();
+  int vertices = 0;
+  for (auto _ : state) {
+    const ConvexHull hull = convex_hull(nodes);
+    vertices = static_cast<int>(hull.vertex.size());
+    benchmark::DoNotOptimize(hull_shape(hull).volume + transitive_facets(hull).n_facets() +
+                             grown_facets(hull).n_facets());
+  }
+  state.counters["nodes"] = static_cast<double>(nodes.size());
+  state.counters["hull_vertices"] = vertices;
+}
+BENCHMARK(one_cut_grain_hull_shape_and_facets)->Unit(benchmark::kMillisecond);
+
 void one_hull_without_skipping_nodes(benchmark::State& state) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(convex_hull_of_all(large().grains().nodes_of(0)).n_triangles());
@@ -110,7 +142,11 @@ void packing_fraction_to_a_thousandth(benchmark::State& state) {
   state.counters["error"] = phi.both.standard_error;
   state.counters["points"] = static_cast<double>(phi.n_points);
 }
-BENCHMARK(packing_fraction_to_a_thousandth)->Unit(benchmark::kSecond)->Iterations(1)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(packing_fraction_to_a_thousandth)
+    ->Unit(benchmark::kSecond)
+    ->Iterations(1)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 /// S(q) of 64 grains of 303 nodes up to q = 3 / d.
 void scattering_of_64_small_grains(benchmark::State& state) {
@@ -134,7 +170,13 @@ void scattering_of_1024_grains(benchmark::State& state) {
   state.counters["vectors"] = vectors;
   state.counters["node_vectors_per_s"] = benchmark::Counter(work, benchmark::Counter::kIsIterationInvariantRate);
 }
-BENCHMARK(scattering_of_1024_grains)->Arg(20)->Arg(40)->Unit(benchmark::kSecond)->Iterations(1)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(scattering_of_1024_grains)
+    ->Arg(20)
+    ->Arg(40)
+    ->Unit(benchmark::kSecond)
+    ->Iterations(1)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 void order_of_1024_grains(benchmark::State& state) {
   const auto centres = grain_centres(large().grains());
@@ -149,6 +191,10 @@ void contact_network_of_1024_grains(benchmark::State& state) {
     benchmark::DoNotOptimize(contact_network(large().box, large().grains()).size());
   }
 }
-BENCHMARK(contact_network_of_1024_grains)->Unit(benchmark::kSecond)->Iterations(1)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(contact_network_of_1024_grains)
+    ->Unit(benchmark::kSecond)
+    ->Iterations(1)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 } // namespace
