@@ -28,6 +28,7 @@ CommandBody add_resume_command(CLI::App& app);
 CommandBody add_check_command(CLI::App& app);
 CommandBody add_forces_command(CLI::App& app);
 CommandBody add_info_command(CLI::App& app);
+CommandBody add_measure_command(CLI::App& app);
 CommandBody add_plot_command(CLI::App& app);
 
 } // namespace boba

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/command.h"
-#include "bpm/app/output_folder.h"
 #include "bpm/app/sibling.h"
-#include "bpm/io/input_error.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +8,7 @@ namespace boba {
 
 namespace {
 
-/// The plot script: beside the installed program's data, or in the source tree a build folder belongs to.
+/// The plot program: beside the installed program's data, or in the source tree a build folder belongs to.
 std::filesystem::path plot_script() {
   const std::filesystem::path installed = program_folder().parent_path() / "share/boba/plot";
   if (!std::filesystem::exists(installed)) {
@@ -22,17 +20,14 @@ std::filesystem::path plot_script() {
 } // namespace
 
 CommandBody add_plot_command(CLI::App& app) {
-  auto folder = std::make_shared<std::filesystem::path>();
-  auto picture = std::make_shared<std::filesystem::path>();
-  app.add_option("run", *folder, "output folder of a run")->required();
-  app.add_option("--output", *picture, "PNG to write (default: plot.png in the folder)");
-  return [folder, picture]() -> ExitCode {
-    const std::filesystem::path table = OutputFolder(*folder).table();
-    if (!std::filesystem::is_regular_file(table)) {
-      throw InputError(fmt::format("plot: {}: there is no such table", table.string()));
-    }
-    const std::filesystem::path png = picture->empty() ? *folder / "plot.png" : *picture;
-    replace_process("/usr/bin/python3", {plot_script().string(), table.string(), "--output", png.string()});
+  // All arguments, --help among them, belong to the Python program.
+  app.prefix_command();
+  app.set_help_flag();
+  return [&app]() -> ExitCode {
+    std::vector<std::string> arguments = {plot_script().string()};
+    const std::vector<std::string> rest = app.remaining();
+    arguments.insert(arguments.end(), rest.begin(), rest.end());
+    replace_process("/usr/bin/python3", arguments);
   };
 }
 

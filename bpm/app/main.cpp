@@ -20,7 +20,8 @@ const std::array commands = {
     boba::Command{"check", "say what a scene would run, without running it", boba::add_check_command},
     boba::Command{"forces", "forces and pressure tensor of a LAMMPS data file of bonded grains",
                   boba::add_forces_command},
-    boba::Command{"plot", "plot a run's table", boba::add_plot_command},
+    boba::Command{"measure", "measure the stored frames of a run", boba::add_measure_command},
+    boba::Command{"plot", "panels and pictures of runs", boba::add_plot_command},
     boba::Command{"info", "version, instruction set, scene reference", boba::add_info_command},
 };
 

@@ -35,7 +35,7 @@ void OutputFolder::create(bool force) const {
   if (!force) {
     return;
   }
-  for (const fs::path& old : {scene(), log(), table(), trajectory(), dump(), vtk(), checkpoints()}) {
+  for (const fs::path& old : {scene(), log(), table(), trajectory(), dump(), vtk(), measures(), checkpoints()}) {
     fs::remove_all(old, error);
     if (error) {
       throw std::runtime_error(fmt::format("output: {} cannot be removed: {}", old.string(), error.message()));

@@ -17,6 +17,7 @@ public:
   std::filesystem::path trajectory() const { return root_ / "trajectory.h5"; }
   std::filesystem::path dump() const { return root_ / "dump.lammpstrj"; }
   std::filesystem::path vtk() const { return root_ / "vtk"; }
+  std::filesystem::path measures() const { return root_ / "measures"; }
   std::filesystem::path checkpoints() const { return root_ / "checkpoints"; }
 
   /// \throws InputError when the folder holds anything and `force` is false, or when it is no folder.

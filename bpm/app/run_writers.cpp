@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/run_writers.h"
 
+#include "bpm/app/measure/measure_tables.h"
 #include "bpm/app/version.h"
 #include "bpm/io/lammps_dump.h"
 #include "bpm/io/trajectory.h"
@@ -61,6 +62,15 @@ FrameObserver::Write vtk_writer(const RunSetup& setup, std::shared_ptr<const Top
   return [series, topology](const Snapshot& snapshot) { series->write(*topology, snapshot); };
 }
 
+FrameObserver::Write measure_writer(const RunSetup& setup, const Simulation& simulation, const MeasurePlan& plan) {
+  const Packing& packing = simulation.packing();
+  const FileMode mode = setup.restart ? FileMode::append : FileMode::create;
+  auto tables =
+      std::make_shared<MeasureTables>(setup.folder.measures(), packing.topology(false), plan,
+                                      undeformed_grains(packing), mode, setup.restart ? setup.restart->step : -1);
+  return [tables](const Snapshot& snapshot) { tables->add(snapshot); };
+}
+
 } // namespace
 
 std::vector<std::int64_t> RunWriters::last_steps() const {
@@ -96,6 +106,10 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
   }
   if (plan.vtk) {
     add(*plan.vtk, vtk_writer(setup, topology));
+  }
+  for (const SceneMeasure& entry : setup.scene.measures) {
+    // Velocities tell the kinetic part of the stress apart.
+    add({entry.every, entry.plan.has(MeasureKind::stress)}, measure_writer(setup, simulation, entry.plan));
   }
   return writers;
 }

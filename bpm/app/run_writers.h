@@ -13,7 +13,7 @@ namespace boba {
 /// The files a scene asks for, as observers. New ones for a new run; a run that goes on cuts them at its checkpoint.
 struct RunWriters {
   std::unique_ptr<TableObserver> table;
-  std::vector<std::unique_ptr<FrameObserver>> frames; ///< trajectory, dump, VTK
+  std::vector<std::unique_ptr<FrameObserver>> frames; ///< trajectory, dump, VTK, measures
 
   /// Step of the last row and of each writer's last frame, as RunSetup::Restart keeps them.
   std::vector<std::int64_t> last_steps() const;

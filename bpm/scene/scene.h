@@ -5,6 +5,7 @@
 #include "bpm/dynamics/stage.h"
 #include "bpm/grain/template_spec.h"
 #include "bpm/laws/material.h"
+#include "bpm/measure/measure_plan.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -32,6 +33,12 @@ struct OutputPlan {
   std::optional<FrameOutput> trajectory, dump, vtk;
   double checkpoint_seconds = 600.0;     ///< real time between two checkpoints
   std::optional<double> checkpoint_time; ///< tau between two checkpoints
+};
+
+/// A [[measure]]: what is measured while the run goes, and when.
+struct SceneMeasure {
+  MeasurePlan plan;
+  OutputInterval every;
 };
 
 struct SceneTemplate {
@@ -89,6 +96,7 @@ struct Scene {
   SimulationOptions options;
   std::optional<double> wall_time; ///< s
   OutputPlan output;
+  std::vector<SceneMeasure> measures;
   Material material;
   std::vector<SceneTemplate> templates;
   std::vector<SceneSpecies> species;

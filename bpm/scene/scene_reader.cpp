@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <set>
+#include <sstream>
 #include <thread>
 
 namespace boba {
@@ -65,6 +66,46 @@ OutputPlan read_output(const SceneTables& tables, const std::filesystem::path& s
   plan.checkpoint_seconds = checkpoint.real("every_seconds", plan.checkpoint_seconds);
   plan.checkpoint_time = checkpoint.maybe_real("every_time");
   return plan;
+}
+
+MeasurePlan read_measure_plan(const SceneTable& table, const Scene& scene) {
+  MeasurePlan plan;
+  plan.material = scene.material;
+  std::vector<std::string> names;
+  std::istringstream what(table.text("what", ""));
+  for (std::string name; std::getline(what, name, ',');) {
+    name.erase(0, name.find_first_not_of(' '));
+    name.erase(name.find_last_not_of(' ') + 1);
+    names.push_back(name);
+  }
+  try {
+    plan.kinds = measure_kinds(names);
+  } catch (const std::invalid_argument& error) {
+    table.fail("what", error.what());
+  }
+  if (plan.kinds.empty()) {
+    table.fail("what", "names no measure");
+  }
+  plan.packing_fraction.n_points = table.integer("points", plan.packing_fraction.n_points);
+  plan.packing_fraction.target_error = table.maybe_real("target_error");
+  plan.scattering.q_max = table.real("q_max", plan.scattering.q_max);
+  plan.facet_sensitivity = table.boolean("sensitivity", false);
+  plan.neighbours =
+      table.text("neighbours", "solid-angle") == "voronoi" ? NeighbourRule::voronoi : NeighbourRule::solid_angle;
+  return plan;
+}
+
+void read_measures(const SceneTables& tables, Scene& scene) {
+  std::set<MeasureKind> taken;
+  for (const SceneTable& table : tables.list("measure")) {
+    const MeasurePlan plan = read_measure_plan(table, scene);
+    for (const MeasureKind kind : plan.kinds) {
+      if (!taken.insert(kind).second) {
+        table.fail("what", "names a measure that another [[measure]] takes already; each has one set of tables");
+      }
+    }
+    scene.measures.push_back({plan, read_interval(table)});
+  }
 }
 
 /// Keys that mean nothing for the template's shape are mistakes, not decoration.
@@ -233,6 +274,7 @@ Scene read_tree(const std::string& text, const std::filesystem::path& path, cons
   scene.material.k = material.real("k", scene.material.k);
   scene.material.gamma = material.real("gamma", scene.material.gamma);
   scene.material.k3 = material.real("k3", scene.material.k3);
+  read_measures(tables, scene);
   read_templates(tables, scene);
   read_species(tables, scene);
   read_start(tables, scene, must_exist);

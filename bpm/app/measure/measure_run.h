@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/app/measure/measure_plan.h"
+#include "bpm/measure/measure_plan.h"
 
 #include <array>
 #include <cstdint>

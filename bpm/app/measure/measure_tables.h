@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bpm/app/measure/grain_shapes.h"
-#include "bpm/app/measure/measure_plan.h"
+#include "bpm/measure/measure_plan.h"
 #include "bpm/io/table.h"
 #include "bpm/measure/non_affine.h"
 #include "bpm/measure/stress.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/app/measure/measure_plan.h"
+#include "bpm/measure/measure_plan.h"
 
 #include <array>
 #include <fmt/format.h>

@@ -1,0 +1,143 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""boba run with [[measure]], boba measure on what it stored, boba plot: they must tell the same."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+PROGRAM = sys.argv.pop(1)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
+import boba  # noqa: E402
+
+SCENE = """
+seed = 3
+[run]
+threads = 2
+[output.trajectory]
+every_strain = 0.05
+velocities = true
+[[measure]]
+what = "stress, shape, order, contacts"
+every_strain = 0.05
+[[measure]]
+what = "packing-fraction, motion"
+every_strain = 0.1
+points = 20000
+[[template]]
+name = "grain"
+nodes = 60
+[[species]]
+count = 12
+alpha = 2.0
+[[stage]]
+type = "insert"
+packing_fraction = 0.25
+[[stage]]
+type = "compress"
+pressure = 0.2
+rate = 2e-3
+pressure_tolerance = 0.05
+kinetic_tolerance = 0.05
+[[stage]]
+type = "shear"
+rate = 2e-3
+strain = 0.3
+pressure = 0.2
+"""
+
+
+def boba_program(folder, *arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=folder, capture_output=True, text=True, check=False,
+                          env={**os.environ, "BOBA_CACHE_DIR": str(folder / "cache")})
+
+
+class Program(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        (cls.folder / "scene.toml").write_text(SCENE)
+        cls.done = boba_program(cls.folder, "run", "scene.toml", "--output", "run")
+        assert cls.done.returncode == 0, cls.done.stderr + cls.done.stdout
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def test_stored_frames_give_what_the_run_measured(self):
+        stored = boba_program(self.folder, "measure", "run", "--output", "again", "--points", "20000")
+        self.assertEqual(stored.returncode, 0, stored.stderr)
+        self.assertNotIn("note:", stored.stdout)
+        live, later = boba.open(self.folder / "run"), boba.open(self.folder / "run", self.folder / "again")
+        for name in ("stress", "grain_stress", "shape", "grains", "order", "grain_order", "coordination", "contacts"):
+            a, b = live.measure(name), later.measure(name)
+            self.assertEqual(list(a), list(b))
+            np.testing.assert_array_equal(a["step"], b["step"], name)
+            for column in a:
+                np.testing.assert_allclose(a[column], b[column], rtol=1e-6, atol=1e-9, err_msg=f"{name} {column}")
+        self.assertGreater(len(live.measure("stress")["step"]), 6)
+        self.assertGreater(len(live.measure("packing_fraction")["step"]), 3)
+
+    def test_stress_is_that_of_the_table(self):
+        run = boba.open(self.folder / "run")
+        stress, table = run.measure("stress"), run.table
+        for step, pressure, mu in zip(stress["step"], stress["P_k/d"], stress["mu"]):
+            row = np.flatnonzero(table["step"] == step)
+            for k in row:
+                # The cell moves by one step of the barostat between the stress and the frame: |dV/V| <= 3 rate_cap dt.
+                self.assertAlmostEqual(table["P_k/d"][k], pressure, delta=3e-4 * pressure)
+                self.assertAlmostEqual(table["mu"][k], mu, delta=1e-12)
+        self.assertTrue(np.isfinite(stress["kinetic_xx_k/d"]).all())
+        self.assertTrue((stress["kinetic_xx_k/d"] <= 0).all())
+
+    def test_sensible_numbers(self):
+        run = boba.open(self.folder / "run")
+        shape = run.measure("shape")
+        self.assertLess(shape["volume_mean_d3"][-1], shape["undeformed_volume_d3"][-1])
+        self.assertAlmostEqual(shape["volume_mean_d3"][0], shape["undeformed_volume_d3"][0], delta=1e-6)
+        phi = run.measure("packing_fraction")["phi"]
+        self.assertGreater(phi[-1], phi[0] + 0.2)
+        self.assertEqual(run.measure("coordination")["contacts_per_grain"][0], 0)  # placed apart
+        self.assertGreater(run.measure("coordination")["contacts_per_grain"][-1], 4)
+        contacts = run.contacts(int(run.measure("contacts")["step"][-1]))
+        self.assertTrue((contacts["area_d2"] > 0.7).all())
+
+    def test_mistakes_are_named_and_write_nothing(self):
+        for text, word in ((SCENE.replace("stress, shape", "stress, colour"), "colour"),
+                           (SCENE.replace("packing-fraction, motion", "shape"), "another")):
+            (self.folder / "wrong.toml").write_text(text)
+            refused = boba_program(self.folder, "run", "wrong.toml", "--output", "wrong")
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(word, refused.stderr)
+            self.assertFalse((self.folder / "wrong").exists())
+        again = boba_program(self.folder, "measure", "run")
+        self.assertEqual(again.returncode, 1)  # the run's own tables are there
+        self.assertIn("stress.csv", again.stderr)
+        self.assertEqual(boba_program(self.folder, "measure", "nothing").returncode, 2)
+        self.assertEqual(boba_program(self.folder, "measure", "run", "--what", "colour").returncode, 2)
+
+    def test_a_run_that_was_stopped_goes_on_with_its_tables(self):
+        (self.folder / "stop.toml").write_text(SCENE.replace("[run]", "[run]\nwall_time = 0.5"))
+        codes = [boba_program(self.folder, "run", "stop.toml", "--output", "stopped").returncode]
+        while codes[-1] == 75 and len(codes) < 200:
+            codes.append(boba_program(self.folder, "resume", "stopped").returncode)
+        self.assertEqual(codes[-1], 0, codes)
+        self.assertGreater(len(codes), 1, "the run was never stopped: give it less wall time")
+        for name in ("stress.csv", "grains.csv", "packing_fraction.csv", "contacts.csv"):
+            self.assertEqual((self.folder / "stopped/measures" / name).read_text(),
+                             (self.folder / "run/measures" / name).read_text(), name)
+
+    def test_plot_of_a_run(self):
+        plotted = boba_program(self.folder, "plot", "run", "--pictures", "--window", "0.05", "0.3")
+        self.assertEqual(plotted.returncode, 0, plotted.stderr)
+        for name in ("plot.png", "plots/facet_counts.png", "plots/grains.png", "plots/hulls.png", "plots/rheology.png"):
+            self.assertGreater((self.folder / "run" / name).stat().st_size, 5000, name)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,138 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The Python module on a small run made here: tables, averages, frames, pictures."""
+import pathlib
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
+import boba  # noqa: E402
+from boba import plot  # noqa: E402
+from boba.pictures import hull_of  # noqa: E402
+from boba.render import Picture, view_axes  # noqa: E402
+
+
+def write_table(path, columns):
+    rows = zip(*columns.values())
+    lines = [",".join(columns)] + [",".join("" if v is None else repr(v) for v in row) for row in rows]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def make_run(folder):
+    strain = [0.01 * k for k in range(600)]
+    write_table(folder / "table.csv", {
+        "step": list(range(600)), "time_tau": [10.0 * k for k in range(600)], "strain": strain, "mu": [0.1 + 0.01 * (k % 2) for k in range(600)],
+        "phi_reference": [0.9] * 600, "P_normalised": [None] * 600, "P_k/d": [0.1] * 600,
+        "inertial_number": [1e-3] * 600})
+    (folder / "measures").mkdir()
+    write_table(folder / "measures" / "grains.csv", {
+        "step": [0, 0, 7, 7], "time_tau": [0.0] * 4, "strain": [0.0, 0.0, 0.5, 0.5], "grain": [1, 2, 1, 2],
+        "volume_d3": [10.0, 11.0, 12.0, 13.0], "asphericity": [1.0, 1.1, 1.2, 1.3], "facets": [12, 11, 10, 12]})
+    box = np.array([[4.0, 1.0, -0.5], [0.0, 5.0, 2.0], [0.0, 0.0, 6.0]])
+    origin = np.array([1.0, 2.0, 3.0])
+    unwrapped = origin + np.random.default_rng(1).normal(size=(20, 3)) * 8
+    image = np.floor(np.linalg.solve(box, (unwrapped - origin).T).T).astype(int)
+    with h5py.File(folder / "trajectory.h5", "w") as file:
+        file["particles/all/position/value"] = (unwrapped - image @ box.T)[None]
+        file["particles/all/position/step"] = np.array([7])
+        file["particles/all/position/time"] = np.array([0.7])
+        file["particles/all/image/value"] = image[None]
+        file["particles/all/box/edges/value"] = box.T[None]
+        file["particles/all/box/boba_origin/value"] = origin[None]
+        file["observables/strain/value"] = np.array([0.5])
+        file["observables/grain_centre/value"] = np.array([unwrapped[:10].mean(0), unwrapped[10:].mean(0)])[None]
+        file["observables/grain_stress/value"] = np.zeros((1, 2, 6))
+        file["parameters/grains/first_node"] = np.array([0, 10, 20])
+        file["parameters/grains/species"] = np.array([0, 0])
+    return unwrapped
+
+
+class Module(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+        self.unwrapped = make_run(self.folder)
+        self.run_ = boba.open(self.folder)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def test_tables_and_rows(self):
+        self.assertEqual(self.run_.measures, ["grains"])
+        self.assertTrue(np.isnan(self.run_.table["P_normalised"][0]))
+        self.assertEqual(list(self.run_.rows("grains", 7)["volume_d3"]), [12.0, 13.0])
+        strains, values = self.run_.grain_traces("facets")
+        self.assertEqual(values.tolist(), [[12, 11], [10, 12]])
+        self.assertEqual(strains.tolist(), [0.0, 0.5])
+        with self.assertRaises(KeyError):
+            self.run_.measure("order")
+        with self.assertRaises(FileNotFoundError):
+            boba.open(self.folder / "nothing")
+
+    def test_a_row_that_is_still_being_written_is_left_out(self):
+        with (self.folder / "table.csv").open("a") as file:
+            file.write("600,6.0,0.3")
+        self.assertEqual(len(boba.open(self.folder).table["step"]), 600)
+
+    def test_average_over_a_window(self):
+        mean, error = self.run_.average("mu", 1, 5)
+        self.assertAlmostEqual(mean, 0.105, delta=2e-5)
+        self.assertLess(error, 5e-4)
+
+    def test_blocked_error_of_a_correlated_series(self):
+        generator = np.random.default_rng(3)
+        ratios = []
+        for _ in range(10):
+            x, series = 0.0, np.empty(8192)
+            noise = generator.normal(size=8192)
+            for k in range(8192):
+                x = 0.8 * x + 0.6 * noise[k]
+                series[k] = x
+            ratios.append(boba.blocked_mean(series)[1] / np.sqrt(9 / 8192))  # (1 + rho) / (1 - rho) = 9
+        self.assertAlmostEqual(np.mean(ratios), 1.0, delta=0.12)
+
+    def test_frames_are_unwrapped(self):
+        self.assertEqual(len(self.run_.frames), 1)
+        frame = self.run_.frames[-1]
+        np.testing.assert_allclose(frame.positions, self.unwrapped, atol=1e-12)
+        np.testing.assert_allclose(frame.grains[1], self.unwrapped[10:], atol=1e-12)
+        self.assertAlmostEqual(frame.volume, 120.0)
+        inside = np.linalg.solve(frame.box, self.unwrapped[3] + frame.shift_into_cell(self.unwrapped[3]) - frame.origin)
+        self.assertTrue(((inside >= 0) & (inside < 1)).all())
+        with self.assertRaises(IndexError):
+            self.run_.frames[1]
+
+    def test_nearer_sphere_hides_the_farther(self):
+        picture = Picture(view_axes((0, 0, 1)), (0, 0, 0), (4, 4), width=40)
+        picture.spheres([[0, 0, 0], [0, 0, 2], [1.4, 0, 0]], [[255, 0, 0], [0, 255, 0], [0, 0, 255]])
+        pixels = picture.colour.reshape(picture.ny, picture.nx, 3)
+        centre = pixels[picture.ny // 2, picture.nx // 2]
+        self.assertGreater(centre[1], 100)
+        self.assertEqual(centre[0], 0)
+        self.assertGreater(pixels[picture.ny // 2, picture.nx // 2 + 28][2], 50)
+        self.assertEqual(pixels[2, 2].tolist(), [255, 255, 255])
+        covered = (picture.depth > -np.inf).sum() / picture.scale**2
+        self.assertAlmostEqual(covered, 2 * np.pi / 4, delta=0.08)  # two discs of diameter 1 are seen
+
+    def test_hull_of_a_cube_has_outward_normals(self):
+        corners = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
+        vertices, triangles, normals = hull_of(np.concatenate([corners, 0.1 * corners]))
+        self.assertEqual(len(vertices), 8)
+        self.assertEqual(len(triangles), 12)
+        self.assertTrue((np.einsum("ij,ij->i", normals, vertices[triangles[:, 0]]) > 0.99).all())
+
+    def test_plot_draws_what_there_is(self):
+        self.assertEqual(plot.main([str(self.folder), "--pictures", "--hulls", "0", "1"]), 0)
+        names = {path.stem for path in (self.folder / "plots").glob("*.png")}
+        self.assertTrue((self.folder / "plot.png").exists())
+        self.assertLessEqual({"stress_ratio", "packing_fraction", "pressure", "volume_distribution", "rheology", "grains", "hulls"}, names)
+        self.assertNotIn("crystal_classes", names)
+        self.assertEqual(plot.main([str(self.folder / "nothing")]), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
