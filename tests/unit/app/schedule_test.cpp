@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/app/schedule.h"
+
+#include <gtest/gtest.h>
+#include <vector>
+
+namespace boba {
+namespace {
+
+/// Steps at which a shear at `rate` with dt = 0.1 is due, going on from step `first`.
+std::vector<std::int64_t> due_steps(const OutputInterval& every, double rate, std::int64_t first, std::int64_t last) {
+  double strain = 0.0;
+  for (std::int64_t step = 1; step <= first; ++step) {
+    strain += rate * 0.1;
+  }
+  Schedule schedule(every, strain, 0.1 * static_cast<double>(first));
+  std::vector<std::int64_t> due;
+  for (std::int64_t step = first + 1; step <= last; ++step) {
+    strain += rate * 0.1;
+    if (schedule.due({step, 0.1 * static_cast<double>(step), strain, false})) {
+      due.push_back(step);
+    }
+  }
+  return due;
+}
+
+TEST(Schedule, StrainAndTimeIntervals) {
+  EXPECT_EQ(due_steps({0.01, std::nullopt}, 1e-3, 0, 350), (std::vector<std::int64_t>{100, 200, 300}));
+  EXPECT_EQ(due_steps({0.01, std::nullopt}, -1e-3, 0, 350), (std::vector<std::int64_t>{100, 200, 300}));
+  EXPECT_EQ(due_steps({std::nullopt, 7.0}, 0.0, 0, 150), (std::vector<std::int64_t>{70, 140}));
+  EXPECT_EQ(due_steps({0.01, 15.0}, 1e-3, 0, 310), (std::vector<std::int64_t>{100, 150, 200, 300}));
+  EXPECT_TRUE(due_steps({}, 1e-3, 0, 1000).empty());
+}
+
+TEST(Schedule, ARunThatGoesOnWritesAtTheSameSteps) {
+  const OutputInterval every{0.003, 1.3};
+  const std::vector<std::int64_t> whole = due_steps(every, 1e-3, 0, 2000);
+  for (const std::int64_t stop : {1, 29, 30, 31, 777, 1300}) {
+    std::vector<std::int64_t> parts = due_steps(every, 1e-3, 0, stop);
+    const std::vector<std::int64_t> rest = due_steps(every, 1e-3, stop, 2000);
+    parts.insert(parts.end(), rest.begin(), rest.end());
+    EXPECT_EQ(parts, whole) << "stopped at " << stop;
+  }
+}
+
+TEST(Schedule, LongRunsKeepTheirPace) {
+  EXPECT_EQ(due_steps({0.01, std::nullopt}, 1e-3, 0, 1000000).size(), 10000U);
+}
+
+} // namespace
+} // namespace boba
