@@ -267,9 +267,13 @@ struct OctantBody::Parts {
   /// Solves with the assembled matrix, from the present u; returns the iterations.
   int solve(const dealii::AffineConstraints<double>& constraints, OctantSolution& solution) {
     dealii::Timer timer;
-    // Three unknowns a node, numbered together: hypre interpolates each component on its own, and the coarse spaces
-    // then hold the translations; the rigid rotations are left to the smoother.
-    dealii::PETScWrappers::set_option_value("-pc_hypre_boomeramg_numfunctions", "3");
+    // Three unknowns a node, numbered together: hypre coarsens each component on its own; without it the iterations
+    // grow with refinement. Its classical defaults fill the coarse levels in three dimensions: the others keep them
+    // sparse, several times faster at three more iterations (docs/performance-continuum.md).
+    for (const auto& [name, value] : {std::pair{"numfunctions", "3"}, {"coarsen_type", "PMIS"},
+                                      {"interp_type", "ext+i"}, {"P_max", "4"}, {"truncfactor", "0.3"}}) {
+      dealii::PETScWrappers::set_option_value(std::string("-pc_hypre_boomeramg_") + name, value);
+    }
     dealii::PETScWrappers::PreconditionBoomerAMG::AdditionalData data;
     data.symmetric_operator = true;
     data.strong_threshold = 0.5;
