@@ -107,6 +107,9 @@ PoissonTable::PoissonTable(const std::filesystem::path& file) : file_(file) {
   if (const TomlNode* source = root.find("source"); source != nullptr) {
     source_ = source->text;
   }
+  if (root.find("stability_limit") != nullptr) {
+    stability_limit_ = number_of(root, "stability_limit");
+  }
   std::vector<double> alpha, young, poisson;
   for (const TomlNode& entry : entries->items) {
     alpha.push_back(number_of(entry, "alpha"));
@@ -136,6 +139,10 @@ double PoissonTable::alpha_of_poisson(double poisson, double k) const {
                     "instead",
                     file_.string(), std::min(a, b), std::max(a, b)));
   }
+}
+
+std::optional<double> PoissonTable::stability_limit(double k) const {
+  return stability_limit_ ? std::optional(k * *stability_limit_) : std::nullopt;
 }
 
 double PoissonTable::checked(double alpha, double k) const {

@@ -49,6 +49,8 @@ public:
   std::optional<double> effective_modulus(double alpha, double k) const;
 
   std::array<double, 2> alpha_range() const { return {poisson_.lowest(), poisson_.highest()}; }
+  /// alpha (for stiffness k) at and below which the undeformed network collapses; empty when the table does not say.
+  std::optional<double> stability_limit(double k) const;
   const std::string& source() const { return source_; } ///< where the numbers come from, one line
 
 private:
@@ -56,6 +58,7 @@ private:
 
   std::filesystem::path file_;
   std::string source_;
+  std::optional<double> stability_limit_; ///< for k = 1
   MonotoneCurve young_, poisson_;
 };
 

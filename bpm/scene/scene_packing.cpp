@@ -109,7 +109,14 @@ std::optional<std::int64_t> timestep_of(const LammpsStart& start) {
 } // namespace
 
 double resolve_alpha(const AlphaChoice& choice, const Material& material, const PoissonTable& table) {
-  return choice.poisson ? table.alpha_of_poisson(*choice.poisson, material.k) : choice.alpha.value_or(0.0);
+  const double alpha =
+      choice.poisson ? table.alpha_of_poisson(*choice.poisson, material.k) : choice.alpha.value_or(0.0);
+  const std::optional<double> limit = table.stability_limit(material.k);
+  if (limit && alpha <= *limit) {
+    throw InputError(fmt::format(
+        "alpha = {:g}: the bonded network is not stable at and below {:g} k d; allowed: above that", alpha, *limit));
+  }
+  return alpha;
 }
 
 Packing make_start(const Scene& scene, const PoissonTable& table, const Narrator& narrate) {

@@ -14,7 +14,7 @@ namespace boba {
 /// Told what takes time or deserves a word while a packing is made.
 using Narrator = std::function<void(const std::string&)>;
 
-/// alpha as given, or from the table. \throws InputError outside the table.
+/// alpha as given, or from the table. \throws InputError outside the table, and where the network is not stable.
 double resolve_alpha(const AlphaChoice& choice, const Material& material, const PoissonTable& table);
 
 /// The packing a scene starts from: templates built or taken from the cache, grains placed; or read from its files.

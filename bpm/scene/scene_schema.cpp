@@ -95,20 +95,21 @@ std::vector<SceneSection> general_sections() {
           {above_key("every_seconds", "s", 0.0, 1e9, "600",
                      "a checkpoint whenever so many seconds of real time have passed"),
            above_key("every_time", "tau", 0.0, 1e12, "", "a checkpoint whenever this much simulated time has passed")}),
-      repeated("measure",
-               "Measures taken while the run goes, into the tables of the folder `measures` (docs/formats-measure.md): at "
-               "the beginning and the end of every stage, and:",
-               joined(interval_keys("a measurement", "", ""),
-                      {required(text_key("what", "",
-                                         "all, or some of stress, packing-fraction, shape, scattering, order, "
-                                         "contacts, motion, separated by commas; each in one `[[measure]]` only")),
-                       integer_key("points", 1.0, 1e9, "100000", "random points of the packing fraction"),
-                       above_key("target_error", "", 0.0, 0.5, "",
-                                 "draw points until the packing fraction's standard error is at most this"),
-                       above_key("q_max", "1/d", 0.0, 20.0, "1", "scattering: largest wave number"),
-                       choice_key("neighbours", {"solid-angle", "voronoi"}, "\"solid-angle\"",
-                                  "rule for neighbours of order and motion"),
-                       boolean_key("sensitivity", "false", "count facets at other thresholds too")})),
+      repeated(
+          "measure",
+          "Measures taken while the run goes, into the tables of the folder `measures` (docs/formats-measure.md): at "
+          "the beginning and the end of every stage, and:",
+          joined(interval_keys("a measurement", "", ""),
+                 {required(text_key("what", "",
+                                    "all, or some of stress, packing-fraction, shape, scattering, order, "
+                                    "contacts, motion, separated by commas; each in one `[[measure]]` only")),
+                  integer_key("points", 1.0, 1e9, "100000", "random points of the packing fraction"),
+                  above_key("target_error", "", 0.0, 0.5, "",
+                            "draw points until the packing fraction's standard error is at most this"),
+                  above_key("q_max", "1/d", 0.0, 20.0, "1", "scattering: largest wave number"),
+                  choice_key("neighbours", {"solid-angle", "voronoi"}, "\"solid-angle\"",
+                             "rule for neighbours of order and motion"),
+                  boolean_key("sensitivity", "false", "count facets at other thresholds too")})),
   };
 }
 

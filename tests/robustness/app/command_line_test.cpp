@@ -47,6 +47,7 @@ TEST(CommandLine, AWrongSceneWritesNothingAndNamesThePlace) {
       {{"run", "scene.toml", "--set", "output.directory=/tmp/elsewhere"}, "relative path"},
       {{"run", "scene.toml", "--set", "output.directory=a/../../b"}, "without \"..\""},
       {{"run", "scene.toml", "--set", "species.0={ count = 4, poisson = 0.49 }"}, "not extrapolated"},
+      {{"run", "scene.toml", "--set", "species.0.alpha=-1.05"}, "not stable"},
       {{"check", "scene.toml", "--set", "run.dt=0"}, "run.dt = 0"},
       {{"resume", "nowhere"}, "nowhere"},
       {{"plot", "nowhere"}, "nowhere"},
