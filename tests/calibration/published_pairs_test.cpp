@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibration/network/network_stiffness.h"
 #include "tests/calibration/test_boxes.h"
+#include "tests/continuum/verification_row.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace boba::calibration {
 namespace {
+
+using continuum::testing::verify;
 
 struct Pair {
   double alpha, poisson, young;
 };
 
 void expect_pairs(const std::vector<Pair>& pairs, const GrainTemplate& box, double poisson_tolerance,
-                  double young_tolerance) {
+                  double young_tolerance, const std::string& source) {
   std::vector<double> alphas;
   for (const Pair& pair : pairs) {
     alphas.push_back(pair.alpha);
@@ -20,27 +24,27 @@ void expect_pairs(const std::vector<Pair>& pairs, const GrainTemplate& box, doub
   const auto solutions = relaxed_stiffness(LinearNetwork(box), alphas);
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const ElasticConstants constants = isotropic_part(solutions[p].stiffness);
-    EXPECT_NEAR(constants.poisson(), pairs[p].poisson, poisson_tolerance) << "alpha = " << pairs[p].alpha;
-    EXPECT_NEAR(constants.young() / pairs[p].young, 1.0, young_tolerance) << "alpha = " << pairs[p].alpha;
+    verify({fmt::format("periodic network of {} nodes, alpha = {}: nu", box.n_nodes(), pairs[p].alpha),
+            constants.poisson(), pairs[p].poisson, poisson_tolerance, source, true});
+    verify({fmt::format("the same: E d/k"), constants.young(), pairs[p].young, young_tolerance, source});
   }
 }
 
 TEST(PublishedPairs, AreReproducedByThePeriodicNetwork) {
-  // Clemmer, Hackney & Grest: alpha -> (nu, E d/k).
   const std::vector<Pair> pairs = {
       {-0.8, 0.40, 0.58}, {0.0, 0.25, 1.84}, {2.0, -0.01, 4.05}, {5.0, -0.25, 6.04}, {12.0, -0.52, 8.30}};
-  expect_pairs(pairs, test_box(2048), 0.01, 0.02);
+  expect_pairs(pairs, test_box(2048), 0.01, 0.02, "Clemmer, Hackney & Grest, calibration of the bonds");
 }
 
 TEST(PublishedPairs, LammpsOnACubeOfTheSameDensityAgrees) {
-  // LAMMPS (the authors' BPM branch): periodic cube of 10976 nodes at 1.2264 / d^3, uniaxial strain 5e-4 and shear,
+  // Periodic cube of 10976 nodes at 1.2264 / d^3, uniaxial strain 5e-4 along each axis and shear in each plane,
   // relaxed.
   const std::vector<Pair> pairs = {{-0.8, 0.4038, 0.5828},
                                    {0.0, 0.2506, 1.8652},
                                    {2.0, -0.0118, 4.0689},
                                    {5.0, -0.2478, 6.0519},
                                    {12.0, -0.5169, 8.3132}};
-  expect_pairs(pairs, test_box(2048, 2), 0.002, 0.01);
+  expect_pairs(pairs, test_box(2048, 2), 0.002, 0.01, "LAMMPS (the authors' BPM branch), periodic cube of 10976 nodes");
 }
 
 } // namespace
