@@ -96,7 +96,8 @@ FoamFit fit_foam(const std::vector<UniaxialPoint>& points, int n_terms) {
   for (const auto& exponents : starts) {
     Eigen::VectorXd x(3 * n_terms);
     for (int k = 0; k < n_terms; ++k) {
-      x.segment<3>(3 * k) << std::log(0.5 / (1.0 + poisson) / n_terms), exponents[k], std::atanh((poisson + 0.25) / 0.75);
+      x.segment<3>(3 * k) << std::log(0.5 / (1.0 + poisson) / n_terms), exponents[k],
+          std::atanh((poisson + 0.25) / 0.75);
     }
     Eigen::NumericalDiff<Misfit, Eigen::Central> derivative(misfit);
     Eigen::LevenbergMarquardt<Eigen::NumericalDiff<Misfit, Eigen::Central>> search(derivative);

@@ -9,11 +9,11 @@ namespace boba::calibration {
 
 /// Smooth K(alpha) and G(alpha) through computed points, k = 1.
 ///
-/// Both are polynomials in y = ln(alpha + 2) (alpha in k d): K itself, and G / (alpha + 2), which is bounded because G
-/// grows linearly. Least squares (Eigen, QR).
+/// Both are polynomials in y = 1 / (alpha + 1.2) (alpha in k d): K itself, and G / (alpha + 1.2), which is bounded
+/// because G grows linearly. Least squares (Eigen, QR).
 class ModuliFit {
 public:
-  /// \throws std::invalid_argument for fewer than three points or an alpha below -1.9.
+  /// \throws std::invalid_argument for fewer than three points or an alpha below -1.1.
   ModuliFit(const std::vector<double>& alphas, const std::vector<ElasticConstants>& constants);
 
   ElasticConstants at(double alpha) const;
