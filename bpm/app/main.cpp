@@ -2,6 +2,7 @@
 // The program `boba`: reads the command line, runs one command, turns errors into exit codes.
 #include "bpm/app/command.h"
 #include "bpm/app/sibling.h"
+#include "bpm/app/thread_waiting.h"
 #include "bpm/app/version.h"
 
 #include <array>
@@ -76,6 +77,7 @@ int run_command(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
+  boba::shorten_thread_waiting(argv);
   try {
     for (const Sibling& sibling : siblings) {
       // Handed over whole, before anything here could take an argument (--help, -o) for its own.
