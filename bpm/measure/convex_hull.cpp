@@ -116,6 +116,28 @@ void turn_outward(const std::vector<Point>& vertices, std::vector<std::array<int
   }
 }
 
+/// Vertices in the order of their nodes, each triangle from its lowest vertex, triangles sorted: the order in which
+/// CGAL hands them over follows addresses in memory, and sums over it would differ in their last digit from run to run.
+void sort_mesh(ConvexHull& hull) {
+  const std::size_t n = hull.vertex.size();
+  std::vector<int> order(n), place(n), node(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return hull.node[a] < hull.node[b]; });
+  std::vector<Vector3> vertex(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    place[order[k]] = static_cast<int>(k);
+    node[k] = hull.node[order[k]];
+    vertex[k] = hull.vertex[order[k]];
+  }
+  hull.node = std::move(node);
+  hull.vertex = std::move(vertex);
+  for (std::array<int, 3>& triangle : hull.triangle) {
+    std::transform(triangle.begin(), triangle.end(), triangle.begin(), [&](int v) { return place[v]; });
+    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
+  }
+  std::sort(hull.triangle.begin(), hull.triangle.end());
+}
+
 ConvexHull hull_of_selected(std::span<const Vector3> nodes, const std::vector<int>& selected) {
   std::vector<Point> points(selected.size());
   std::transform(selected.begin(), selected.end(), points.begin(), [&](int i) { return to_point(nodes[i]); });
@@ -134,6 +156,7 @@ ConvexHull hull_of_selected(std::span<const Vector3> nodes, const std::vector<in
     hull.vertex.emplace_back(p.x(), p.y(), p.z());
   }
   hull.node = find_nodes(nodes, selected, hull.vertex);
+  sort_mesh(hull);
   hull.neighbour = adjacency(hull.triangle, hull.vertex.size());
   return hull;
 }

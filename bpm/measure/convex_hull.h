@@ -10,7 +10,8 @@
 
 namespace boba::measure {
 
-/// A convex hull as a closed triangle mesh with outward (counter-clockwise) triangles.
+/// A convex hull as a closed triangle mesh with outward (counter-clockwise) triangles; vertices in the order of their
+/// nodes, triangles sorted by vertices.
 struct ConvexHull {
   std::vector<int> node;                     ///< per hull vertex: its number among the nodes that were given
   std::vector<Vector3> vertex;               ///< per hull vertex: its position, d
