@@ -11,7 +11,7 @@ namespace boba {
 
 ContactList::ContactList(const LaneLayout& layout, double diameter, double skin)
     : layout_(layout), diameter_(diameter), skin_(skin), grids_(layout.n_grains()), bounds_(layout.n_grains()),
-      neighbours_(layout.n_grains()), rows_(layout.n_grains()), moved_(layout.n_grains()), has_moved_(layout.n_grains()) {
+      neighbours_(layout.n_grains()), rows_(layout.n_grains()) {
   for (int g = 0; g < layout.n_grains(); ++g) {
     n_nodes_ += layout.n_nodes(g);
   }
@@ -63,8 +63,6 @@ void ContactList::build(const LaneState& state, const Box& box,
   for (int g = 0; g < n_grains; ++g) {
     // Nodes with a new reference may leave their grain's bounds by the margin.
     neighbours_[g] = neighbour_grains(g, bounds_, box, diameter_ + skin_ + 2.0 * bounds_margin);
-    moved_[g].clear();
-    has_moved_[g].assign(layout_.n_nodes(g), 0);
   }
   collect_images();
   origin_ = box.origin();

@@ -91,14 +91,12 @@ private:
   Matrix3 deformation_ = Matrix3::Identity(); ///< of the cell since then
   double bound_ = 0.0;                        ///< on any node's distance from its reference, d
   AlignedVector reference_;                   ///< in the frame of the cell when the list was built, lane layout
-  std::vector<GrainGrid> grids_; ///< over the references at the build
+  std::vector<GrainGrid> grids_; ///< over the references at the build, new ones inserted
   std::vector<Bounds> bounds_;
   std::vector<std::vector<NeighbourGrain>> neighbours_;
   std::vector<ImageVector> images_; ///< sorted; with n also -n
   std::vector<Rows> rows_;
-  std::vector<std::vector<std::int32_t>> moved_;     ///< per grain: nodes whose reference is not the grid's
-  std::vector<std::vector<std::uint8_t>> has_moved_; ///< per grain and node
-  std::int64_t n_moved_ = 0, n_nodes_ = 0;
+  std::int64_t n_moved_ = 0, n_nodes_ = 0; ///< new references since the build; all nodes
   std::int64_t n_builds_ = 0, n_refreshed_ = 0;
 };
 

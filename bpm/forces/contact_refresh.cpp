@@ -12,7 +12,7 @@ namespace {
 /// Share of nodes with new references above which a build is cheaper than going on.
 constexpr double largest_moved_share = 0.15;
 /// Nodes beyond this share of the allowed displacement get a new reference at a go, so that the rest has room.
-constexpr double refresh_share = 0.5;
+constexpr double refresh_share = 0.7;
 
 } // namespace
 
@@ -98,11 +98,8 @@ bool ContactList::set_reference(const MovedNode& moved, const LaneState& state) 
   for (int c = 0; c < 3; ++c) {
     reference_[at + c * stride] = reference[c];
   }
-  if (has_moved_[moved.grain][moved.node] == 0) {
-    has_moved_[moved.grain][moved.node] = 1;
-    moved_[moved.grain].push_back(moved.node);
-    ++n_moved_;
-  }
+  grids_[moved.grain].insert(moved.node, reference);
+  ++n_moved_;
   return true;
 }
 
@@ -110,31 +107,24 @@ void ContactList::find_pairs(const MovedNode& moved, const NetworkData& network,
                              std::vector<std::vector<SortedPair>>& found) const {
   const auto [g, i] = moved;
   const Vector3 x = reference_of(g, i);
-  const double reach2 = (diameter_ + skin_) * (diameter_ + skin_);
+  // Nodes that have moved since the build are also found where they were: listed too often, never too rarely.
   std::vector<std::int32_t> nodes;
-  const auto collect = [&](int other, const Vector3& seen_from) {
-    nodes.clear();
-    add_nodes_near(grids_[other], seen_from, nodes); // nodes that have moved since are listed too many, never too few
-    for (const std::int32_t j : moved_[other]) {
-      if ((reference_of(other, j) - seen_from).squaredNorm() < reach2) {
-        nodes.push_back(j);
-      }
-    }
-  };
   const auto add = [&](int other, std::int32_t j, const ImageVector& n) {
     found[g].push_back(row_of(g, i, other, j, image_index(n)));
     found[other].push_back(row_of(other, j, g, i, image_index({-n.a, -n.b, -n.c})));
   };
   for (const NeighbourGrain& neighbour : neighbours_[g]) {
     const ImageVector& n = neighbour.image;
-    collect(neighbour.other, x - cell_ * Vector3(n.a, n.b, n.c));
+    nodes.clear();
+    add_nodes_near(grids_[neighbour.other], x - cell_ * Vector3(n.a, n.b, n.c), nodes);
     for (const std::int32_t j : nodes) {
       if (neighbour.other != g || !network.bonded_across(i, j, {n.a, n.b, n.c})) {
         add(neighbour.other, j, n);
       }
     }
   }
-  collect(g, x);
+  nodes.clear();
+  add_nodes_near(grids_[g], x, nodes);
   for (const std::int32_t j : nodes) {
     if (j != i && !std::binary_search(network.partners_begin(i), network.partners_end(i), j)) {
       add(g, j, {});

@@ -181,6 +181,7 @@ void add_nodes_near(const GrainGrid& grid, const Vector3& x, std::vector<std::in
       nodes[k] = grid.node(nodes[k]);
     }
   });
+  grid.visit_inserted(x, [&](std::int32_t node) { nodes.push_back(node); });
 }
 
 } // namespace boba

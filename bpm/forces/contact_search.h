@@ -43,7 +43,7 @@ void add_pairs_between(const GrainGrid& own, const GrainGrid& other, const Vecto
 /// Adds the unbonded pairs inside a grain that are closer than the reach, each from both sides.
 void add_pairs_inside(const GrainGrid& own, const NetworkData& network, std::vector<CandidatePair>& pairs);
 
-/// Adds the nodes of a grid that are closer than its reach to x (d).
+/// Adds the nodes of a grid that are closer than its reach to x (d), inserted places included.
 void add_nodes_near(const GrainGrid& grid, const Vector3& x, std::vector<std::int32_t>& nodes);
 
 } // namespace boba

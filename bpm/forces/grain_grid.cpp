@@ -10,7 +10,7 @@ GrainGrid::GrainGrid(std::span<const Vector3> nodes, const Bounds& bounds, doubl
   for (int axis = 0; axis < 3; ++axis) {
     n_cells_[axis] = 1 + static_cast<int>((bounds.high[axis] - bounds.low[axis]) * inverse_cell_);
     n *= n_cells_[axis];
-    n_ringed *= n_cells_[axis] + 2;
+    n_ringed *= n_cells_[axis] + 2 * ring;
   }
   first_.assign(n + 1, 0);
   near_.assign(n_ringed, 0);
@@ -23,15 +23,12 @@ GrainGrid::GrainGrid(std::span<const Vector3> nodes, const Bounds& bounds, doubl
     cell[i] = (c[2] * n_cells_[1] + c[1]) * n_cells_[0] + c[0];
     ++first_[cell[i] + 1];
   }
-  const std::int64_t row = n_cells_[0] + 2, layer = row * (n_cells_[1] + 2);
   std::int64_t k = 0;
   for (int z = 0; z < n_cells_[2]; ++z) {
     for (int y = 0; y < n_cells_[1]; ++y) {
       for (int x = 0; x < n_cells_[0]; ++x, ++k) {
         if (first_[k + 1] > 0) {
-          for (int around = 0; around < 9; ++around) {
-            std::fill_n(near_.begin() + (z + around / 3) * layer + (y + around % 3) * row + x, 3, std::uint8_t{1});
-          }
+          mark_around(x, y, z);
         }
         first_[k + 1] += first_[k];
       }
@@ -47,16 +44,37 @@ GrainGrid::GrainGrid(std::span<const Vector3> nodes, const Bounds& bounds, doubl
   }
 }
 
+void GrainGrid::mark_around(int x, int y, int z) {
+  for (int dz = -1; dz <= 1; ++dz) {
+    for (int dy = -1; dy <= 1; ++dy) {
+      std::fill_n(near_.begin() + ringed(x - 1, y + dy, z + dz), 3, std::uint8_t{1});
+    }
+  }
+}
+
+void GrainGrid::insert(std::int32_t node, const Vector3& position) {
+  if (last_inserted_.empty()) {
+    last_inserted_.assign(near_.size(), -1);
+  }
+  int c[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    c[axis] = std::clamp(coordinate(position[axis], axis), -1, n_cells_[axis]);
+  }
+  std::int32_t& last = last_inserted_[ringed(c[0], c[1], c[2])];
+  inserted_.push_back({position, node, last});
+  last = static_cast<std::int32_t>(inserted_.size()) - 1;
+  mark_around(c[0], c[1], c[2]);
+}
+
 bool GrainGrid::near(const Vector3& x) const {
-  std::int64_t index = 0;
-  for (int axis = 2; axis >= 0; --axis) {
-    const int c = coordinate(x[axis], axis) + 1;
-    if (c < 0 || c > n_cells_[axis] + 1) {
+  int c[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    c[axis] = coordinate(x[axis], axis);
+    if (c[axis] < -ring || c[axis] >= n_cells_[axis] + ring) {
       return false;
     }
-    index = index * (n_cells_[axis] + 2) + c;
   }
-  return near_[index] != 0;
+  return near_[ringed(c[0], c[1], c[2])] != 0;
 }
 
 } // namespace boba

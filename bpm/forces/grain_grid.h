@@ -38,25 +38,64 @@ public:
     return static_cast<int>(std::floor((x - bounds_.low[axis]) * inverse_cell_));
   }
   int inside(int coordinate, int axis) const { return std::clamp(coordinate, 0, n_cells_[axis] - 1); }
-  /// False when none of the 27 cells around the one that holds x has a node.
+  /// False when none of the 27 cells around the one that holds x has a node, inserted ones included.
   bool near(const Vector3& x) const;
+  /// Adds a place where a node is seen too, up to one cell outside the bounds. The sorted nodes stay as they are.
+  void insert(std::int32_t node, const Vector3& position);
+  /// Calls visit(node) for the inserted places closer than the reach to x.
+  template <class Visit> void visit_inserted(const Vector3& x, Visit&& visit) const {
+    if (inserted_.empty()) {
+      return;
+    }
+    int c[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      c[axis] = coordinate(x[axis], axis);
+    }
+    for (int z = std::max(c[2] - 1, -ring); z <= std::min(c[2] + 1, n_cells_[2] + ring - 1); ++z) {
+      for (int y = std::max(c[1] - 1, -ring); y <= std::min(c[1] + 1, n_cells_[1] + ring - 1); ++y) {
+        for (int x_cell = std::max(c[0] - 1, -ring); x_cell <= std::min(c[0] + 1, n_cells_[0] + ring - 1); ++x_cell) {
+          for (std::int32_t at = last_inserted_[ringed(x_cell, y, z)]; at >= 0; at = inserted_[at].previous) {
+            if ((inserted_[at].position - x).squaredNorm() < reach_ * reach_) {
+              visit(inserted_[at].node);
+            }
+          }
+        }
+      }
+    }
+  }
 
   std::int32_t node(std::int32_t place) const { return node_[place]; }
   Vector3 position(std::int32_t place) const { return {x_[place], y_[place], z_[place]}; }
   kernels::SortedNodes columns() const { return {x_.data(), y_.data(), z_.data()}; }
   std::size_t bytes() const {
     return (first_.capacity() + node_.capacity()) * sizeof(std::int32_t) + 3 * x_.capacity() * sizeof(double) +
-           near_.capacity();
+           near_.capacity() + last_inserted_.capacity() * sizeof(std::int32_t) +
+           inserted_.capacity() * sizeof(Inserted);
   }
 
 private:
+  /// Cells around the grid on each side: an inserted place may be in the first, whoever is near it in the second.
+  static constexpr int ring = 2;
+
+  struct Inserted {
+    Vector3 position;
+    std::int32_t node, previous; ///< `previous`: the one inserted into the same cell before, or -1
+  };
+
+  std::int64_t ringed(int x, int y, int z) const {
+    return (static_cast<std::int64_t>(z + ring) * (n_cells_[1] + 2 * ring) + y + ring) * (n_cells_[0] + 2 * ring) + x + ring;
+  }
+  void mark_around(int x, int y, int z);
+
   Bounds bounds_;
   double reach_ = 1.0, inverse_cell_ = 1.0;
   int n_cells_[3] = {0, 0, 0};
   std::vector<std::int32_t> first_;
   std::vector<std::int32_t> node_;
   std::vector<double> x_, y_, z_;
-  std::vector<std::uint8_t> near_; ///< over the cells and one ring around them
+  std::vector<std::uint8_t> near_;           ///< over the cells and the rings around them
+  std::vector<std::int32_t> last_inserted_; ///< over the same, or empty
+  std::vector<Inserted> inserted_;
 };
 
 } // namespace boba
