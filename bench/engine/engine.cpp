@@ -41,6 +41,7 @@ void dense_shear(benchmark::State& state) {
   state.counters["drift_%"] = 100.0 * (after.integration - before.integration) / all;
   state.counters["steps_per_list"] =
       steps / std::max(1.0, static_cast<double>(after.list_builds - before.list_builds));
+  state.counters["bytes_per_node"] = static_cast<double>(stepper.bytes()) / nodes;
   state.SetLabel(stepper.forces().kernel_table().name);
 }
 

@@ -80,6 +80,8 @@ public:
   double end_gap() const { return end_gap_; }
   void set_end_gap(double gap) { end_gap_ = gap; }
   Timings timings() const;
+  /// Memory of everything that grows with the number of grains: state, contact list, the packing as it began.
+  std::size_t bytes() const;
 
   void save(SavedState& saved) const;
   /// \throws std::runtime_error, std::out_of_range when the state belongs to another packing or lacks a number.

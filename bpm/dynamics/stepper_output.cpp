@@ -52,12 +52,19 @@ Snapshot Stepper::snapshot(Simulation::Parts parts) const {
     snapshot.grain_centre.push_back(centre / layout_.n_nodes(g));
     const GrainSums& sums = forces_.grain_sums()[g];
     std::array<double, 6> stress;
+    // The cell has moved since the forces: scaled so that the grains' sum over the snapshot's volume is the stress.
     for (int c = 0; c < 6; ++c) {
-      stress[c] = -(sums.virial[c] + sums.kinetic[c]);
+      stress[c] = -(sums.virial[c] + sums.kinetic[c]) * box_.volume() / evaluated_volume_;
     }
     snapshot.grain_stress.push_back(stress);
   }
   return snapshot;
+}
+
+std::size_t Stepper::bytes() const {
+  return (state_.x.capacity() + state_.v.capacity() + state_.f.capacity()) * sizeof(double) +
+         forces_.contact_list().bytes() + (packing_.position.capacity() + packing_.velocity.capacity()) * sizeof(Vector3) +
+         packing_.id.capacity() * sizeof(std::int64_t);
 }
 
 namespace {

@@ -126,7 +126,7 @@ def density(axes, runs):
                   label=f"{label}: undeformed volumes")
         if has(run, "packing_fraction"):
             phi = run.measure("packing_fraction")
-            inside = phi[column] >= run.table[column][rows].min()
+            inside = phi["step"] >= run.table["step"][rows].min()
             axes.errorbar(phi[column][inside], phi["phi"][inside], phi["phi_error"][inside], fmt="o-", ms=3, lw=1,
                           color=colour, label=f"{label}: nodes and hulls")
         _label(axes, name, "phi", "packing fraction")
