@@ -27,13 +27,15 @@ std::string StageSummary::text(const Simulation& simulation, const std::string& 
   const auto steps = static_cast<double>(simulation.step() - first_step_);
   std::string text = name + ":";
   const double strain = simulation.strain() - first_strain_;
-  if (strain != 0.0 && n_ > 0.0) {
+  // A sheared packing fluctuates: means. Any other stage is told by where it ends.
+  const bool sheared = strain != 0.0 && n_ > 0.0;
+  const double pressure = sheared ? pressure_ / n_ : simulation.totals().pressure;
+  const double phi = sheared ? phi_ / n_ : numbers_.phi_reference(simulation.box());
+  if (sheared) {
     text += fmt::format(" strain {:.4g}; means of its second half: mu {:.3f},", strain, mu_ / n_);
   }
-  if (n_ > 0.0) {
-    text += numbers_.modulus ? fmt::format(" P~ {:.4g},", numbers_.normalised(pressure_ / n_)) : "";
-    text += fmt::format(" P {:.4g} k/d, phi_reference {:.4f},", pressure_ / n_, phi_ / n_);
-  }
+  text += numbers_.modulus ? fmt::format(" P~ {:.4g},", numbers_.normalised(pressure)) : "";
+  text += fmt::format(" P {:.4g} k/d, phi_reference {:.4f},", pressure, phi);
   return text + fmt::format(" {:.0f} steps in {}, {:.3g} M node-steps/s", steps, readable_duration(seconds),
                             seconds > 0.0 ? steps * static_cast<double>(numbers_.n_nodes) / seconds * 1e-6 : 0.0);
 }
