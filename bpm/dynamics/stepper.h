@@ -113,7 +113,7 @@ private:
   Matrix3 residual_rate_ = Matrix3::Zero();    ///< the rest, as a rate of the cell matrix
   double evaluated_volume_ = 1.0;              ///< of the cell that the last forces belong to
   double pressure_ = 0.0, kinetic_energy_ = 0.0;
-  double integration_seconds_ = 0.0, other_seconds_ = 0.0;
+  double integration_seconds_ = 0.0;
 };
 
 } // namespace boba

@@ -35,7 +35,6 @@ public:
 
   /// Candidates of one grain whose other node lives in a block of `other_stride` lanes (block_lanes or 1).
   kernels::ContactRows rows(int grain, int other_stride) const;
-  int n_images() const { return static_cast<int>(images_.size()); }
   const std::vector<ImageVector>& images() const { return images_; }
   std::int64_t n_candidates() const;
   std::int64_t n_builds() const { return n_builds_; }
