@@ -17,6 +17,7 @@ namespace {
 // Names of this file; the simulation's own have no slash.
 const std::string packing_prefix = "packing/";
 const std::string last_steps_name = "output/last_steps";
+const std::string motion_name = "output/motion";
 
 bool is_simulation_name(const std::string& name) { return name.find('/') == std::string::npos && name != "modulus"; }
 
@@ -158,6 +159,9 @@ RunSetup setup_from(const LatestCheckpoint& checkpoint, const OutputFolder& fold
     }
     restart.step = data.integer.at("step").at(0);
     restart.last_steps = data.integer.at(last_steps_name);
+    if (const auto motion = data.real.find(motion_name); motion != data.real.end()) {
+      restart.motion = motion->second;
+    }
     restart.file = checkpoint.path.string();
     setup.restart = std::move(restart);
     return setup;
@@ -165,6 +169,13 @@ RunSetup setup_from(const LatestCheckpoint& checkpoint, const OutputFolder& fold
     throw InputError(fmt::format("{}: a part is missing; it was written by another version ({})",
                                  checkpoint.path.string(),
                                  data.text.contains("version") ? data.text.at("version") : "unknown"));
+  }
+}
+
+void store_writers(CheckpointData& data, const RunWriters& writers) {
+  data.integer[last_steps_name] = writers.last_steps();
+  if (writers.motion) {
+    data.real[motion_name] = writers.motion->save_motion();
   }
 }
 
@@ -191,7 +202,7 @@ std::filesystem::path CheckpointObserver::write(const Simulation& simulation) {
   for (auto& [name, values] : state.integer) {
     data_.integer[name] = std::move(values);
   }
-  data_.integer[last_steps_name] = last_steps_();
+  store_writers_(data_);
   const std::filesystem::path file = write_checkpoint(folder_, data_);
   last_ = Clock::now();
   return file;

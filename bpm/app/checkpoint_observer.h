@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/app/run_setup.h"
+#include "bpm/app/run_writers.h"
 #include "bpm/app/schedule.h"
 #include "bpm/dynamics/observer.h"
 #include "bpm/io/checkpoint.h"
@@ -23,14 +24,17 @@ CheckpointData constant_part(const RunSetup& setup, const Simulation& simulation
 /// \throws InputError when the checkpoint lacks a part.
 RunSetup setup_from(const LatestCheckpoint& checkpoint, const OutputFolder& folder);
 
+/// Adds what the writers have written so far: the part of RunSetup::Restart that is theirs.
+void store_writers(CheckpointData& data, const RunWriters& writers);
+
 /// Writes checkpoints by real time and by simulated time.
 class CheckpointObserver : public Observer {
 public:
-  /// `last_steps` is asked for what the other writers have written, see RunSetup::Restart.
+  /// `store_writers` adds what the other writers have written, see RunSetup::Restart.
   CheckpointObserver(std::filesystem::path folder, CheckpointData constant, double every_seconds,
-                     const Schedule& schedule, std::function<std::vector<std::int64_t>()> last_steps)
+                     const Schedule& schedule, std::function<void(CheckpointData&)> store_writers)
       : folder_(std::move(folder)), data_(std::move(constant)), every_seconds_(every_seconds), schedule_(schedule),
-        last_steps_(std::move(last_steps)) {}
+        store_writers_(std::move(store_writers)) {}
 
   bool wants(const StepForecast& forecast) override;
   void observe(const Simulation& simulation, const StageProgress& progress) override;
@@ -43,7 +47,7 @@ private:
   CheckpointData data_;
   double every_seconds_;
   Schedule schedule_;
-  std::function<std::vector<std::int64_t>()> last_steps_;
+  std::function<void(CheckpointData&)> store_writers_;
   bool due_ = false;
   Clock::time_point last_ = Clock::now();
 };

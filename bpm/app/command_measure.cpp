@@ -28,8 +28,14 @@ ExitCode measure_stored_frames(MeasureArguments a) {
   if (!result.undeformed_known) {
     fmt::print("note: the first frame shows no undeformed grain of every template; the undeformed columns are empty\n");
   }
-  if (!result.velocity_known && a.options.plan.has(MeasureKind::stress)) {
-    fmt::print("note: no velocities are stored; the stress holds its kinetic part, which is not told apart\n");
+  if (a.options.plan.has(MeasureKind::stress)) {
+    if (!result.stored_stress.empty()) {
+      fmt::print("note: the stress is that which the run stored, damping and kinetic parts included: {}\n",
+                 result.stored_stress);
+    } else if (!result.velocity_known) {
+      fmt::print("note: no velocities are stored; damping and kinetic parts are missing from the stress (P_run and "
+                 "mu_run, of the run itself, hold them)\n");
+    }
   }
   return ExitCode::done;
 }
@@ -71,6 +77,8 @@ CommandBody add_measure_command(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--output", options.output, "folder of the tables (default: measures in the run's folder)");
   app.add_option("--threads", options.threads, "threads; 0 takes all cores")->check(CLI::Range(0, 1024));
+  app.add_flag("--stored-stress", options.stored_stress,
+               "the stress that the run stored, instead of one from forces evaluated anew");
   app.add_flag("--force", options.force, "replace tables that are there");
   add_numbers(app, options.plan);
   app.footer("Tables and columns: docs/formats-measure.md.");

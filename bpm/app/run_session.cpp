@@ -54,7 +54,7 @@ public:
     checkpoints_ = std::make_unique<CheckpointObserver>(
         setup_.folder.checkpoints(), constant_part(setup_, simulation_), plan.checkpoint_seconds,
         Schedule({std::nullopt, plan.checkpoint_time}, simulation_.strain(), simulation_.time()),
-        [this] { return writers_.last_steps(); });
+        [this](CheckpointData& data) { store_writers(data, writers_); });
   }
 
   ExitCode run() {

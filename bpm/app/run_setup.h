@@ -25,6 +25,7 @@ struct RunSetup {
     std::int64_t step = 0;
     std::string file;
     std::vector<std::int64_t> last_steps; ///< written last: by the table, then by each writer of frames
+    std::vector<double> motion;           ///< of MeasureTables::save_motion; empty when motion is not measured
   };
   std::optional<Restart> restart;
 };

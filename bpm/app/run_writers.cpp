@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/run_writers.h"
 
-#include "bpm/app/measure/measure_tables.h"
 #include "bpm/app/version.h"
 #include "bpm/io/lammps_dump.h"
 #include "bpm/io/trajectory.h"
@@ -62,13 +61,17 @@ FrameObserver::Write vtk_writer(const RunSetup& setup, std::shared_ptr<const Top
   return [series, topology](const Snapshot& snapshot) { series->write(*topology, snapshot); };
 }
 
-FrameObserver::Write measure_writer(const RunSetup& setup, const Simulation& simulation, const MeasurePlan& plan) {
+std::shared_ptr<MeasureTables> measure_tables(const RunSetup& setup, const Simulation& simulation,
+                                              const MeasurePlan& plan) {
   const Packing& packing = simulation.packing();
   const FileMode mode = setup.restart ? FileMode::append : FileMode::create;
   auto tables =
       std::make_shared<MeasureTables>(setup.folder.measures(), packing.topology(false), plan,
                                       undeformed_grains(packing), mode, setup.restart ? setup.restart->step : -1);
-  return [tables](const Snapshot& snapshot) { tables->add(snapshot); };
+  if (setup.restart && plan.has(MeasureKind::motion)) {
+    tables->restore_motion(setup.restart->motion);
+  }
+  return tables;
 }
 
 } // namespace
@@ -109,7 +112,11 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
   }
   for (const SceneMeasure& entry : setup.scene.measures) {
     // Velocities tell the kinetic part of the stress apart.
-    add({entry.every, entry.plan.has(MeasureKind::stress)}, measure_writer(setup, simulation, entry.plan));
+    const auto tables = measure_tables(setup, simulation, entry.plan);
+    add({entry.every, entry.plan.has(MeasureKind::stress)}, [tables](const Snapshot& snapshot) { tables->add(snapshot); });
+    if (entry.plan.has(MeasureKind::motion)) {
+      writers.motion = tables;
+    }
   }
   return writers;
 }

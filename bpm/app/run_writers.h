@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/app/frame_observer.h"
+#include "bpm/app/measure/measure_tables.h"
 #include "bpm/app/run_setup.h"
 #include "bpm/app/table_observer.h"
 
@@ -14,6 +15,9 @@ namespace boba {
 struct RunWriters {
   std::unique_ptr<TableObserver> table;
   std::vector<std::unique_ptr<FrameObserver>> frames; ///< trajectory, dump, VTK, measures
+
+  /// The measures of motion, which look back to the frame before; null when not asked for.
+  std::shared_ptr<const MeasureTables> motion;
 
   /// Step of the last row and of each writer's last frame, as RunSetup::Restart keeps them.
   std::vector<std::int64_t> last_steps() const;

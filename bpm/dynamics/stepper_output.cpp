@@ -26,6 +26,7 @@ Snapshot Stepper::snapshot(Simulation::Parts parts) const {
   snapshot.step = step_;
   snapshot.time = time();
   snapshot.strain = strain_;
+  snapshot.streaming_rate = residual_rate_(0, 1) / box_.h()(1, 1);
   snapshot.box = box_;
   const Vector3 shift = box_.origin() - position_map_ * box_.origin();
   const double back = started_ ? -0.5 * options_.dt / material_.node_mass : 0.0;

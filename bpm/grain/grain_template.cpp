@@ -1,7 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/grain/grain_template.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace boba {
+
+bool is_at_rest(const GrainTemplate& grain) {
+  return std::all_of(grain.bonds.begin(), grain.bonds.end(), [&](const Bond& bond) {
+    Eigen::Vector3d d = grain.position[bond.i] - grain.position[bond.j];
+    if (grain.period) {
+      d -= d.cwiseQuotient(*grain.period).array().round().matrix().cwiseProduct(*grain.period);
+    }
+    return std::abs(d.norm() - bond.r0) <= 1e-6 * bond.r0;
+  });
+}
 
 std::vector<double> reference_node_volumes(int n_nodes, const std::vector<Bond>& bonds) {
   std::vector<double> volume(n_nodes, 0.0);

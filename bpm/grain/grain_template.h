@@ -30,6 +30,9 @@ struct GrainTemplate {
   int n_nodes() const { return static_cast<int>(position.size()); }
 };
 
+/// True when the arrangement is the undeformed one: every bond has its rest length, to a millionth.
+bool is_at_rest(const GrainTemplate& grain);
+
 /// V0_i = sum of r0^3 over the bonds of node i (d^3), for every node.
 /// Source: Clemmer, Hackney & Grest, bond force (unnumbered equation), "V_i ~ sum r^3".
 std::vector<double> reference_node_volumes(int n_nodes, const std::vector<Bond>& bonds);

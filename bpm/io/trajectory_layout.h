@@ -21,6 +21,7 @@ inline constexpr const char* box_origin = "/particles/all/box/boba_origin";
 inline constexpr const char* strain = "/observables/strain";
 inline constexpr const char* grain_centre = "/observables/grain_centre";
 inline constexpr const char* grain_stress = "/observables/grain_stress";
+inline constexpr const char* streaming_rate = "/observables/streaming_rate";
 inline constexpr const char* grains = "/parameters/grains";
 
 /// 1 once the writer has closed the file, 0 while it writes and after a kill.
@@ -33,7 +34,7 @@ inline constexpr std::int32_t image_not_written = std::numeric_limits<std::int32
 /// Steps of the frames that are complete: every dataset has them, and no value is still the fill value.
 std::vector<std::int64_t> complete_steps(const hdf5::File& file);
 
-/// The growing datasets a file holds (with `/value`), velocities only when they are stored.
+/// The growing datasets a file holds (with `/value`); velocities and streaming rates only when they are stored.
 std::vector<std::string> growing_values(const hdf5::File& file);
 
 } // namespace boba::trajectory

@@ -44,6 +44,32 @@ TrajectoryOrigin read_origin(const File& file) {
   throw InputError(fmt::format("{}: {}", file.path().string(), why));
 }
 
+std::vector<Vector3> as_vectors(const std::vector<double>& numbers) {
+  std::vector<Vector3> vectors(numbers.size() / 3);
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    vectors[i] = Vector3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
+  }
+  return vectors;
+}
+
+std::vector<std::vector<Vector3>> read_undeformed(const File& file) {
+  const std::string folder = std::string(grains) + "/";
+  std::vector<std::vector<Vector3>> undeformed;
+  if (!file.has(folder + "undeformed_position")) {
+    return undeformed;
+  }
+  const std::vector<Vector3> nodes = as_vectors(file.read<double>(folder + "undeformed_position"));
+  const auto first = file.read<std::int64_t>(folder + "undeformed_first_node");
+  if (first.empty() || first.front() != 0 || first.back() != static_cast<std::int64_t>(nodes.size()) ||
+      !std::is_sorted(first.begin(), first.end())) {
+    refuse(file, folder + "undeformed_first_node does not divide the undeformed nodes into templates");
+  }
+  for (std::size_t t = 0; t + 1 < first.size(); ++t) {
+    undeformed.emplace_back(nodes.begin() + first[t], nodes.begin() + first[t + 1]);
+  }
+  return undeformed;
+}
+
 Topology read_topology(const File& file) {
   const std::string folder = std::string(grains) + "/";
   Topology topology;
@@ -53,6 +79,7 @@ Topology read_topology(const File& file) {
   topology.species = narrowed<int>(file.read<std::int64_t>(folder + "species"));
   topology.template_index = narrowed<int>(file.read<std::int64_t>(folder + "template"));
   topology.alpha = file.read<double>(folder + "alpha");
+  topology.undeformed = read_undeformed(file);
   const std::vector<std::int64_t>& first = topology.first_node;
   if (first.empty() || first.front() != 0 || first.back() != topology.n_nodes() ||
       !std::is_sorted(first.begin(), first.end())) {
@@ -72,14 +99,6 @@ Topology read_topology(const File& file) {
     topology.bonds.push_back(pair);
   }
   return topology;
-}
-
-std::vector<Vector3> as_vectors(const std::vector<double>& numbers) {
-  std::vector<Vector3> vectors(numbers.size() / 3);
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    vectors[i] = Vector3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
-  }
-  return vectors;
 }
 
 } // namespace
@@ -128,6 +147,9 @@ Snapshot TrajectoryReader::snapshot(std::int64_t frame) const {
     snapshot.step = steps_[index];
     snapshot.time = in.file.read_frame<double>(std::string(position) + "/time", static_cast<hsize_t>(index)).at(0);
     snapshot.strain = in.frame_of<double>(strain, index).at(0);
+    if (in.file.has(streaming_rate)) {
+      snapshot.streaming_rate = in.frame_of<double>(streaming_rate, index).at(0);
+    }
     const std::vector<double> h = in.frame_of<double>(edges, index), corner = in.frame_of<double>(box_origin, index);
     snapshot.box = Box(Vector3(corner.data()), Vector3(h[0], h[4], h[8]), Vector3(h[3], h[6], h[7]), in.periodic);
     snapshot.position = as_vectors(in.frame_of<double>(position, index));

@@ -62,6 +62,23 @@ template <typename T> std::vector<std::int64_t> widened(const std::vector<T>& va
   return {values.begin(), values.end()};
 }
 
+/// Nodes of the undeformed templates one after the other, with the range of each.
+void write_undeformed(const File& file, const Topology& topology) {
+  std::vector<std::int64_t> first = {0};
+  std::vector<double> all_nodes;
+  for (const std::vector<Vector3>& nodes : topology.undeformed) {
+    for (const Vector3& x : nodes) {
+      all_nodes.insert(all_nodes.end(), x.data(), x.data() + 3);
+    }
+    first.push_back(static_cast<std::int64_t>(all_nodes.size() / 3));
+  }
+  if (!all_nodes.empty()) {
+    file.write<std::int64_t>(std::string(grains) + "/undeformed_first_node", first);
+    file.write<double>(std::string(grains) + "/undeformed_position", all_nodes, 3);
+    file.set_attribute(std::string(grains) + "/undeformed_position", "boba_unit", std::string("d"));
+  }
+}
+
 void write_grains(const File& file, const Topology& topology) {
   const std::string folder = std::string(grains) + "/";
   file.make_group(grains);
@@ -72,6 +89,7 @@ void write_grains(const File& file, const Topology& topology) {
   write("molecule", topology.molecule);
   write("species", widened(topology.species));
   write("template", widened(topology.template_index));
+  write_undeformed(file, topology);
   file.write<double>(folder + "alpha", topology.alpha);
   file.set_attribute(folder + "alpha", "boba_unit", std::string("k d"));
 }
@@ -127,6 +145,7 @@ void make_elements(const File& file, const Topology& topology, const TrajectoryO
   make_element(file, edges, {{3, 3}, small_chunk, 0}, "d");
   make_element(file, box_origin, {{3}, small_chunk, 0}, "d");
   make_element(file, strain, {{}, small_chunk, 0}, "1");
+  make_element(file, streaming_rate, {{}, small_chunk, 0}, "1/tau");
   make_element(file, grain_centre, {{n_grains, 3}, 1, 0}, "d");
   make_element(file, grain_stress, {{n_grains, 6}, 1, 0}, "k d");
   file.set_attribute(value_of(grain_stress), "components", std::string("xx yy zz xy xz yz"));
@@ -151,6 +170,14 @@ std::span<const double> numbers(const std::vector<Vector3>& vectors) {
   return {vectors.data()->data(), 3 * vectors.size()};
 }
 
+std::size_t undeformed_nodes(const Topology& topology) {
+  std::size_t n = 0;
+  for (const std::vector<Vector3>& nodes : topology.undeformed) {
+    n += nodes.size();
+  }
+  return n;
+}
+
 void set_closed(const File& file, bool is_closed) {
   const std::int32_t value = is_closed ? 1 : 0;
   file.rewrite<std::int32_t>(closed, {&value, 1});
@@ -171,9 +198,11 @@ std::vector<std::string> all_growing(const File& file) {
 
 void copy_frames(const File& from, const File& to, hsize_t n_frames) {
   to.reserve(std::filesystem::file_size(from.path()));
-  for (const std::string& name : all_growing(from)) {
+  for (const std::string& name : all_growing(to)) {
     for (hsize_t frame = 0; frame < n_frames; ++frame) {
-      if (name == step_name()) {
+      if (!from.has(name)) {
+        to.write_frame<double>(name, frame, std::vector<double>{0.0}); // a streaming rate, of a file that has none
+      } else if (name == step_name()) {
         to.write_frame<std::int64_t>(name, frame, from.read_frame<std::int64_t>(name, frame));
       } else if (name == value_of(image)) {
         to.write_frame<std::int32_t>(name, frame, from.read_frame<std::int32_t>(name, frame));
@@ -214,6 +243,7 @@ struct TrajectoryWriter::Impl {
   File file;
   std::size_t n_nodes = 0, n_grains = 0;
   bool has_velocity = false, has_boundary = false;
+  bool has_streaming_rate = true; ///< false for a file of a version that did not store it
   std::int64_t n_frames = 0;
   std::int64_t last_step = -1;
 };
@@ -240,7 +270,7 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Topo
   impl_->has_velocity = options.velocity;
   const File& file = impl_->file;
   file.reserve(index_room + origin_of_file.scene.size() + 64 * topology.id.size() + 64 * topology.first_node.size() +
-               24 * topology.bonds.size());
+               24 * topology.bonds.size() + 24 * undeformed_nodes(topology));
   write_head(file, origin_of_file);
   file.make_group(box);
   const std::vector<std::int32_t> dimension = {3};
@@ -266,6 +296,7 @@ TrajectoryWriter TrajectoryWriter::go_on(const std::filesystem::path& path, cons
   impl->n_nodes = topology.id.size();
   impl->n_grains = static_cast<std::size_t>(topology.n_grains());
   impl->has_velocity = file.has(velocity);
+  impl->has_streaming_rate = file.has(streaming_rate);
   const std::vector<std::int64_t> steps = complete_steps(file);
   impl->n_frames = std::upper_bound(steps.begin(), steps.end(), last_step) - steps.begin();
   for (const std::string& name : all_growing(file)) {
@@ -317,6 +348,9 @@ void TrajectoryWriter::write(const Snapshot& snapshot) {
   write(edges, {h.data(), 9});
   write(box_origin, {corner.data(), 3});
   write(strain, {&snapshot.strain, 1});
+  if (out.has_streaming_rate) {
+    write(streaming_rate, {&snapshot.streaming_rate, 1});
+  }
   write(grain_centre, numbers(snapshot.grain_centre));
   write(grain_stress, {snapshot.grain_stress.data()->data(), 6 * snapshot.grain_stress.size()});
   write(position, numbers(wrapped));

@@ -50,8 +50,14 @@ Matrix3 deformation_gradient(const Box& before, const Box& after, double strain_
   return h * before.h_inverse();
 }
 
-NonAffineMotion::NonAffineMotion(const Box& box, std::span<const Vector3> centres)
-    : box_(box), centre_(centres.begin(), centres.end()), displacement_(centres.size(), Vector3::Zero()) {}
+NonAffineMotion::NonAffineMotion(const Box& box, std::span<const Vector3> centres,
+                                 std::span<const Vector3> displacements)
+    : box_(box), centre_(centres.begin(), centres.end()), displacement_(displacements.begin(), displacements.end()) {
+  if (displacement_.empty()) {
+    displacement_.assign(centres.size(), Vector3::Zero());
+  }
+  check_count(displacement_.size(), centre_.size());
+}
 
 void NonAffineMotion::add(const Box& box, std::span<const Vector3> centres, double strain_step) {
   check_count(centres.size(), centre_.size());

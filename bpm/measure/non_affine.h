@@ -23,7 +23,8 @@ Matrix3 deformation_gradient(const Box& before, const Box& after, double strain_
 class NonAffineMotion {
 public:
   /// \param centres unwrapped, d
-  NonAffineMotion(const Box& box, std::span<const Vector3> centres);
+  /// \param displacements so far, d, for a motion that goes on; none: this is the first frame
+  NonAffineMotion(const Box& box, std::span<const Vector3> centres, std::span<const Vector3> displacements = {});
   /// Takes in the next frame. `strain_step` as in deformation_gradient.
   void add(const Box& box, std::span<const Vector3> centres, double strain_step);
 

@@ -21,6 +21,9 @@ Topology Packing::topology(bool with_bonds) const {
     topology.alpha.push_back(grain.alpha);
     topology.template_index.push_back(grain.template_index);
   }
+  for (const auto& grain_template : templates) {
+    topology.undeformed.push_back(is_at_rest(*grain_template) ? grain_template->position : std::vector<Vector3>{});
+  }
   if (with_bonds) {
     for (int g = 0; g < n_grains(); ++g) {
       const std::int64_t first = topology.first_node[g];

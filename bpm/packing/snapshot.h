@@ -26,6 +26,8 @@ struct Topology {
     double r0;
   };
   std::vector<Pair> bonds; ///< global node numbers; r0 in d
+  /// Per template: nodes of the undeformed grain (all bonds at rest), d. Empty, as a whole or one, where not known.
+  std::vector<std::vector<Vector3>> undeformed;
 
   std::int64_t n_nodes() const { return static_cast<std::int64_t>(id.size()); }
   int n_grains() const { return static_cast<int>(first_node.size()) - 1; }
@@ -38,6 +40,8 @@ struct Snapshot {
   std::int64_t step = 0;
   double time = 0.0;   ///< tau
   double strain = 0.0; ///< accumulated shear strain
+  /// Shear rate that images move with while positions do not follow (remap = "velocities"), 1/tau; else 0.
+  double streaming_rate = 0.0;
   Box box;
   std::vector<Vector3> position; ///< d
   std::vector<Vector3> velocity; ///< d/tau, full step; empty when not asked for

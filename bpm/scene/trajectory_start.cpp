@@ -13,6 +13,20 @@ namespace {
 
 constexpr double bulk_density = 1.226; // nodes per d^3; docs/notation.md, "Grain"
 
+/// The undeformed nodes of a grain's template where they are stored, else the grain as the first frame shows it.
+std::vector<Vector3> arrangement_of(const Topology& topology, const Snapshot& first, int grain) {
+  const auto nodes = first.nodes_of(topology, grain);
+  const auto t = static_cast<std::size_t>(topology.template_index[grain]);
+  if (t < topology.undeformed.size() && topology.undeformed[t].size() == nodes.size()) {
+    return topology.undeformed[t];
+  }
+  std::vector<Vector3> arrangement(nodes.begin(), nodes.end());
+  for (Vector3& x : arrangement) {
+    x -= first.grain_centre[grain];
+  }
+  return arrangement;
+}
+
 /// Undeformed networks by template number: bonds of the first grain that has it.
 std::vector<std::shared_ptr<const GrainTemplate>> networks_of(const Topology& topology, const Snapshot& first,
                                                               const std::filesystem::path& file) {
@@ -39,6 +53,12 @@ std::vector<std::shared_ptr<const GrainTemplate>> networks_of(const Topology& to
       const auto i = static_cast<int>(bond.i - topology.first_node[g]),
                  j = static_cast<int>(bond.j - topology.first_node[g]);
       networks[t].bonds.push_back({std::min(i, j), std::max(i, j), bond.r0});
+      const Vector3 d = first.position[bond.i] - first.position[bond.j];
+      if ((d - first.box.minimum_image(d)).norm() > 1e-6 * bond.r0) {
+        throw InputError(fmt::format("{}: nodes {} and {} are bonded across the boundary of the cell; a periodic specimen "
+                                     "cannot be taken from a trajectory",
+                                     file.string(), topology.id[bond.i], topology.id[bond.j]));
+      }
     }
   }
   std::vector<std::shared_ptr<const GrainTemplate>> result;
@@ -46,11 +66,7 @@ std::vector<std::shared_ptr<const GrainTemplate>> networks_of(const Topology& to
     if (model[t] < 0) {
       throw InputError(fmt::format("{}: no grain has the template number {}", file.string(), t));
     }
-    const auto nodes = first.nodes_of(topology, model[t]);
-    networks[t].position.assign(nodes.begin(), nodes.end());
-    for (Vector3& x : networks[t].position) {
-      x -= first.grain_centre[model[t]];
-    }
+    networks[t].position = arrangement_of(topology, first, model[t]);
     std::sort(networks[t].bonds.begin(), networks[t].bonds.end(),
               [](const Bond& a, const Bond& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
     networks[t].reference_volume = networks[t].n_nodes() / bulk_density;

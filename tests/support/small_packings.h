@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/packing/packing.h"
+#include "bpm/packing/snapshot.h"
 
 #include <cstdint>
 #include <memory>
@@ -25,5 +26,12 @@ struct SmallPackingSpec {
   std::uint64_t seed = 1;
 };
 Packing small_packing(const SmallPackingSpec& spec);
+
+/// Two grains of 3 and 2 nodes with numbers that all differ, for files.
+Topology small_topology();
+
+/// The state of small_topology() at a step, by formulas that tests/support/read_trajectory.py repeats:
+/// x_i = (1.7 i + 0.01 s, 3 i - 20, 0.5 - 2 i), v_i = (i, 0.1 s, -i), a tilted cell that grows with s.
+Snapshot small_snapshot(std::int64_t step);
 
 } // namespace boba::test

@@ -29,7 +29,7 @@ std::vector<measure::ConvexHull> grain_hulls(const measure::GrainNodes& grains) 
 UndeformedGrains undeformed_grains(const Packing& packing) {
   UndeformedGrains undeformed;
   for (const auto& grain_template : packing.templates) {
-    undeformed.nodes.push_back(grain_template->position);
+    undeformed.nodes.push_back(is_at_rest(*grain_template) ? grain_template->position : std::vector<Vector3>{});
   }
   return undeformed;
 }
@@ -46,6 +46,7 @@ UndeformedGrains undeformed_grains(const Topology& topology, const Snapshot& sna
   }
   UndeformedGrains undeformed;
   const auto& index = topology.template_index;
+  undeformed.nodes = topology.undeformed;
   undeformed.nodes.resize(index.empty() ? 0 : *std::max_element(index.begin(), index.end()) + 1);
   for (int grain = 0; grain < topology.n_grains() && !topology.bonds.empty(); ++grain) {
     std::vector<Vector3>& nodes = undeformed.nodes[index[grain]];

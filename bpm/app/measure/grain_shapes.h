@@ -24,15 +24,16 @@ GrainShape grain_shape(const measure::ConvexHull& hull, const measure::FacetOpti
 /// Hulls of all grains, on all threads. \throws std::invalid_argument naming the grain whose nodes have no volume.
 std::vector<measure::ConvexHull> grain_hulls(const measure::GrainNodes& grains);
 
-/// Nodes of an undeformed grain of each template: the baseline of every shape. Empty where it is not known.
+/// Nodes of an undeformed grain of each template: the baseline of every shape. Empty where it is not known (a template
+/// whose bonds are not at their rest length).
 struct UndeformedGrains {
   std::vector<std::vector<Vector3>> nodes; ///< by template index
 };
 
 UndeformedGrains undeformed_grains(const Packing& packing);
 
-/// The same from a frame, for templates of which some grain has all its bonds at their rest length (within 1e-6);
-/// the others stay empty.
+/// The same from a trajectory: as stored, else from its first frame for templates of which some grain has all its bonds
+/// at their rest length (within 1e-6); the others stay empty.
 UndeformedGrains undeformed_grains(const Topology& topology, const Snapshot& snapshot);
 
 } // namespace boba

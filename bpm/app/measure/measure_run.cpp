@@ -5,6 +5,8 @@
 #include "bpm/io/input_error.h"
 #include "bpm/io/trajectory.h"
 #include "bpm/measure/blocking.h"
+#include "bpm/scene/scene.h"
+#include "bpm/scene/trajectory_start.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +15,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <omp.h>
+#include <sstream>
+#include <utility>
 
 namespace boba {
 
@@ -73,6 +77,44 @@ private:
   double last_strain_ = std::numeric_limits<double>::infinity(); ///< none yet: any frame is far from it
 };
 
+/// The scene that a trajectory came from; nothing when it names none that can be read.
+std::optional<Scene> scene_of(const TrajectoryOrigin& origin, const std::filesystem::path& path) {
+  std::vector<std::string> overrides;
+  const std::string mark = "# --set ";
+  std::istringstream lines(origin.scene);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(mark)) {
+      overrides.push_back(line.substr(mark.size()));
+    }
+  }
+  try {
+    return read_stored_scene(origin.scene, path, overrides);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// What evaluates the forces anew, or the reason why it cannot.
+std::pair<std::shared_ptr<FrameStress>, std::string> frame_stress(const MeasureRunOptions& options,
+                                                                  const std::optional<Scene>& scene) {
+  if (options.stored_stress) {
+    return {nullptr, "it was asked for"};
+  }
+  if (!scene) {
+    return {nullptr, "the trajectory names no scene to take the material from"};
+  }
+  const auto presses = [](const SceneStage& stage) { return std::holds_alternative<PressStage>(stage.stage); };
+  if (std::any_of(scene->stages.begin(), scene->stages.end(), presses)) {
+    return {nullptr, "the run has walls or clamps, which frames do not hold"};
+  }
+  try {
+    Packing packing = read_trajectory_packing(trajectory_of(options.run), 0, std::nullopt);
+    return {std::make_shared<FrameStress>(std::move(packing), scene->material, scene->options.dt), ""};
+  } catch (const InputError& error) {
+    return {nullptr, error.what()};
+  }
+}
+
 /// averages.json and the same for the terminal.
 std::string write_averages(const std::filesystem::path& path, const MeasureTables& tables,
                            const std::optional<std::array<double, 2>>& window) {
@@ -130,8 +172,16 @@ MeasureRunResult measure_run(const MeasureRunOptions& options) {
   UndeformedGrains undeformed = undeformed_grains(reader.topology(), reader.snapshot(0));
   result.undeformed_known =
       std::none_of(undeformed.nodes.begin(), undeformed.nodes.end(), [](const auto& nodes) { return nodes.empty(); });
-  MeasureTables tables(result.folder, reader.topology(), options.plan, std::move(undeformed),
+  const std::optional<Scene> scene = scene_of(reader.origin(), trajectory_of(options.run));
+  MeasurePlan plan = options.plan;
+  plan.material = scene ? scene->material : plan.material;
+  MeasureTables tables(result.folder, reader.topology(), plan, std::move(undeformed),
                        options.force ? FileMode::overwrite : FileMode::create);
+  if (plan.has(MeasureKind::stress)) {
+    auto [stress, reason] = frame_stress(options, scene);
+    tables.set_frame_stress(std::move(stress));
+    result.stored_stress = std::move(reason);
+  }
   FrameChoice choice(options, reader.n_frames());
   for (std::int64_t frame = 0; frame < reader.n_frames(); ++frame) {
     if (!choice.may_take(frame)) {

@@ -21,6 +21,7 @@ struct MeasureRunOptions {
   std::optional<std::int64_t> only_frame;      ///< this frame alone; negative counts from the end
   std::optional<std::array<double, 2>> window; ///< strain window of averages.json; all frames without it
   bool force = false;                          ///< replace tables that are there
+  bool stored_stress = false;                  ///< take the stress that the run stored, evaluate nothing
   int threads = 0;                             ///< 0: all cores
 };
 
@@ -28,7 +29,8 @@ struct MeasureRunResult {
   std::int64_t n_frames = 0;
   std::filesystem::path folder;
   bool undeformed_known = true; ///< false: no frame shows the undeformed grains, so the baseline columns are empty
-  bool velocity_known = true; ///< false: no velocities are stored, so the kinetic part of the stress is not told apart
+  bool velocity_known = true;   ///< false: no velocities are stored
+  std::string stored_stress;    ///< why the stress is the stored one; empty: the forces were evaluated anew
   std::string averages;       ///< lines for the terminal: quantity, mean, standard error
 };
 

@@ -40,6 +40,16 @@ template <class Value> double mean_of(std::size_t n, const Value& value) {
 
 const std::vector<std::string> frame_columns = {"step", "time_tau", "strain"};
 
+Tensor6 total_stress(const std::vector<Tensor6>& grains, const Box& box) {
+  Tensor6 total{};
+  for (const Tensor6& grain : grains) {
+    for (std::size_t c = 0; c < total.size(); ++c) {
+      total[c] += grain[c] / box.volume();
+    }
+  }
+  return total;
+}
+
 std::vector<double> hull_radii(const std::vector<ConvexHull>& hulls) {
   std::vector<double> radii;
   for (const ConvexHull& hull : hulls) {
@@ -84,7 +94,8 @@ void MeasureTables::open_tables(FileMode mode, std::int64_t last_step) {
   using enum MeasureKind;
   table(stress, "stress",
         {"xx_k/d", "yy_k/d", "zz_k/d", "xy_k/d", "xz_k/d", "yz_k/d", "P_k/d", "mu", "N1_k/d", "N2_k/d",
-         "kinetic_xx_k/d", "kinetic_yy_k/d", "kinetic_zz_k/d", "kinetic_xy_k/d", "kinetic_xz_k/d", "kinetic_yz_k/d"});
+         "kinetic_xx_k/d", "kinetic_yy_k/d", "kinetic_zz_k/d", "kinetic_xy_k/d", "kinetic_xz_k/d", "kinetic_yz_k/d",
+         "with_damping", "P_run_k/d", "mu_run"});
   table(stress, "grain_stress", {"grain", "xx_kd2", "yy_kd2", "zz_kd2", "xy_kd2", "xz_kd2", "yz_kd2"});
   table(
       packing_fraction, "packing_fraction",
@@ -185,26 +196,31 @@ void MeasureTables::find_neighbours(Frame& frame) const {
 }
 
 void MeasureTables::add_stress(const Snapshot& snapshot) {
-  Tensor6 total{};
-  for (std::size_t grain = 0; grain < snapshot.grain_stress.size(); ++grain) {
+  const std::vector<Tensor6> grains = frame_stress_ ? frame_stress_->evaluate(snapshot) : snapshot.grain_stress;
+  for (std::size_t grain = 0; grain < grains.size(); ++grain) {
     Row row = {grain_number(static_cast<int>(grain))};
-    for (int c = 0; c < 6; ++c) {
-      total[c] += snapshot.grain_stress[grain][c] / snapshot.box.volume();
-      row.emplace_back(snapshot.grain_stress[grain][c]);
-    }
+    row.insert(row.end(), grains[grain].begin(), grains[grain].end());
     write("grain_stress", snapshot, row);
   }
+  const Tensor6 total = total_stress(grains, snapshot.box);
   const StressSummary summary = summarise_stress(total);
   Row row(total.begin(), total.end());
   for (const double value : {summary.pressure, summary.mu, summary.normal_difference_1, summary.normal_difference_2}) {
     row.emplace_back(value);
   }
   if (snapshot.velocity.empty()) {
-    row.resize(16); // without velocities the kinetic part cannot be told apart: empty fields
+    row.resize(row.size() + 6); // without velocities the kinetic part cannot be told apart: empty fields
   } else {
+    Matrix3 gradient = Matrix3::Zero();
+    gradient(0, 1) = snapshot.streaming_rate;
     const Tensor6 kinetic =
-        kinetic_stress(snapshot.box, snapshot.position, snapshot.velocity, plan_.material.node_mass);
+        kinetic_stress(snapshot.box, snapshot.position, snapshot.velocity, plan_.material.node_mass, gradient);
     row.insert(row.end(), kinetic.begin(), kinetic.end());
+  }
+  const bool with_damping = !frame_stress_ || !snapshot.velocity.empty();
+  const StressSummary of_run = summarise_stress(total_stress(snapshot.grain_stress, snapshot.box));
+  for (const double value : {with_damping ? 1.0 : 0.0, of_run.pressure, of_run.mu}) {
+    row.emplace_back(value);
   }
   write("stress", snapshot, row);
   note("mu", snapshot, summary.mu);

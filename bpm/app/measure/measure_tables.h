@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/app/measure/frame_stress.h"
 #include "bpm/app/measure/grain_shapes.h"
 #include "bpm/measure/measure_plan.h"
 #include "bpm/io/table.h"
@@ -9,6 +10,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,14 @@ public:
                 FileMode mode, std::int64_t last_step = -1);
 
   void add(const Snapshot& snapshot);
+
+  /// Forces evaluated anew: used for the stress instead of what the frames hold. Null: what the frames hold.
+  void set_frame_stress(std::shared_ptr<FrameStress> stress) { frame_stress_ = std::move(stress); }
+
+  /// What `motion` remembers of the frames so far, so that a run that goes on continues its tables.
+  std::vector<double> save_motion() const;
+  /// \throws std::runtime_error when the numbers belong to another packing.
+  void restore_motion(const std::vector<double>& saved);
 
   /// What was found, for averages: strain and value of each frame, by the name of the quantity.
   struct Series {
@@ -74,6 +84,7 @@ private:
   std::filesystem::path folder_;
   const Topology topology_;
   MeasurePlan plan_;
+  std::shared_ptr<FrameStress> frame_stress_;
   std::map<std::string, TableWriter> tables_;
   std::map<std::string, Series> series_;
 

@@ -4,8 +4,10 @@
 #include "bpm/measure/contact_network.h"
 #include "bpm/measure/parallel_loop.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 namespace boba {
 
@@ -121,6 +123,74 @@ void MeasureTables::add_motion(const Frame& frame) {
   past_->strain = snapshot.strain;
   past_->centres = centres;
   past_->neighbours = frame.neighbours;
+}
+
+// Layout: box h, origin, periodic, strain | centres | displacements | per grain: number of neighbours, then
+// grain, vector, weight of each.
+std::vector<double> MeasureTables::save_motion() const {
+  std::vector<double> saved;
+  if (!past_) {
+    return saved;
+  }
+  const auto put = [&](const auto& numbers) { saved.insert(saved.end(), numbers.data(), numbers.data() + numbers.size()); };
+  put(past_->box.h());
+  put(past_->box.origin());
+  for (const bool periodic : past_->box.periodic()) {
+    saved.push_back(periodic ? 1.0 : 0.0);
+  }
+  saved.push_back(past_->strain);
+  for (const Vector3& x : past_->centres) {
+    put(x);
+  }
+  for (const Vector3& u : past_->motion.displacements()) {
+    put(u);
+  }
+  for (const auto& list : past_->neighbours) {
+    saved.push_back(static_cast<double>(list.size()));
+    for (const Neighbour& neighbour : list) {
+      saved.push_back(neighbour.grain);
+      put(neighbour.vector);
+      saved.push_back(neighbour.weight);
+    }
+  }
+  return saved;
+}
+
+void MeasureTables::restore_motion(const std::vector<double>& saved) {
+  if (saved.empty()) {
+    return;
+  }
+  std::size_t at = 0;
+  const auto take = [&] {
+    if (at >= saved.size()) {
+      throw std::runtime_error("the motion measured so far: numbers are missing; they belong to another packing");
+    }
+    return saved[at++];
+  };
+  const auto take_vector = [&] {
+    const double x = take(), y = take(), z = take();
+    return Vector3(x, y, z);
+  };
+  Matrix3 h;
+  for (double& number : h.reshaped()) {
+    number = take();
+  }
+  const Vector3 origin = take_vector(), periodic = take_vector();
+  const double strain = take();
+  Box box(origin, h.diagonal(), {h(0, 1), h(0, 2), h(1, 2)}, {periodic[0] != 0.0, periodic[1] != 0.0, periodic[2] != 0.0});
+  const auto n = static_cast<std::size_t>(topology_.n_grains());
+  std::vector<Vector3> centres(n), displacements(n);
+  std::generate(centres.begin(), centres.end(), take_vector);
+  std::generate(displacements.begin(), displacements.end(), take_vector);
+  NeighbourLists neighbours(n);
+  for (auto& list : neighbours) {
+    for (double left = take(); left > 0.0; --left) {
+      const int grain = static_cast<int>(take());
+      const Vector3 vector = take_vector();
+      list.push_back({grain, vector, take()});
+    }
+  }
+  past_.emplace(Past{box, strain, centres, std::move(neighbours), NonAffineMotion(box, centres, displacements)});
 }
 
 } // namespace boba

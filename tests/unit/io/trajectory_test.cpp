@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/input_error.h"
 #include "bpm/io/trajectory.h"
-#include "tests/support/small_packing.h"
+#include "tests/support/small_packings.h"
 #include "tests/support/temporary_folder.h"
 
 #include <cstdlib>
@@ -33,6 +33,7 @@ void expect_frames(const std::filesystem::path& path, const std::vector<std::int
     EXPECT_EQ(read.step, wanted.step);
     EXPECT_EQ(read.time, wanted.time);
     EXPECT_EQ(read.strain, wanted.strain);
+    EXPECT_EQ(read.streaming_rate, wanted.streaming_rate);
     EXPECT_EQ(read.box.h(), wanted.box.h());
     EXPECT_EQ(read.box.origin(), wanted.box.origin());
     EXPECT_EQ(read.grain_centre, wanted.grain_centre);
@@ -84,6 +85,7 @@ TEST(Trajectory, ReadsBackWhatWasWritten) {
     EXPECT_EQ(read.species, wanted.species);
     EXPECT_EQ(read.alpha, wanted.alpha);
     EXPECT_EQ(read.template_index, wanted.template_index);
+    EXPECT_EQ(read.undeformed, wanted.undeformed);
     ASSERT_EQ(read.bonds.size(), wanted.bonds.size());
     for (std::size_t b = 0; b < read.bonds.size(); ++b) {
       EXPECT_EQ(read.bonds[b].i, wanted.bonds[b].i);

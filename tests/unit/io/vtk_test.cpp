@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/input_error.h"
 #include "bpm/io/vtk.h"
-#include "tests/support/small_packing.h"
+#include "tests/support/small_packings.h"
 #include "tests/support/temporary_folder.h"
 
 #include <cstdlib>

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/app/measure/frame_stress.h"
+
+#include "bpm/forces/force_field.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <stdexcept>
+
+namespace boba {
+
+namespace {
+
+constexpr double contact_skin = 0.05; ///< d; a frame's list is used a few times for the same positions
+constexpr int max_iterations = 30;
+constexpr double relative_change = 1e-12; ///< of the stress, at which the half-step velocities have settled
+
+} // namespace
+
+struct FrameStress::Impl {
+  Impl(Packing packing_in, const Material& material_in, double dt_in)
+      : packing(std::move(packing_in)), material(material_in), dt(dt_in), layout(packing), state(packing, layout),
+        forces(packing, layout, material, contact_skin) {}
+
+  void place(const Snapshot& snapshot) {
+    for (int g = 0; g < layout.n_grains(); ++g) {
+      for (int node = 0; node < layout.n_nodes(g); ++node, ++next) {
+        for (int c = 0; c < 3; ++c) {
+          state.x[layout.index(g, node, c)] = snapshot.position[next][c];
+          state.v[layout.index(g, node, c)] = snapshot.velocity.empty() ? 0.0 : snapshot.velocity[next][c];
+        }
+      }
+    }
+    next = 0;
+    forces.contact_list().invalidate();
+  }
+
+  /// v = v(n) - dt/(2m) f, with the forces evaluated last.
+  void step_back(const Snapshot& snapshot) {
+    const double back = 0.5 * dt / material.node_mass;
+    for (int g = 0; g < layout.n_grains(); ++g) {
+      for (int node = 0; node < layout.n_nodes(g); ++node, ++next) {
+        for (int c = 0; c < 3; ++c) {
+          const std::int64_t at = layout.index(g, node, c);
+          state.v[at] = snapshot.velocity[next][c] - back * state.f[at];
+        }
+      }
+    }
+    next = 0;
+  }
+
+  /// Forces and sums at the present velocities; returns the largest component of the sum over the grains.
+  double evaluate(const Snapshot& snapshot, double half_kick) {
+    Matrix3 gradient = Matrix3::Zero();
+    gradient(0, 1) = snapshot.streaming_rate;
+    forces.evaluate(state, snapshot.box, {0.0, half_kick, Virial::full, gradient * snapshot.box.h()});
+    grain.assign(layout.n_grains(), {});
+    double size = 0.0;
+    Tensor6 total{};
+    for (int g = 0; g < layout.n_grains(); ++g) {
+      const GrainSums& sums = forces.grain_sums()[g];
+      for (int c = 0; c < 6; ++c) {
+        grain[g][c] = -(sums.virial[c] + sums.kinetic[c]);
+        total[c] += grain[g][c];
+        size = std::max(size, std::abs(total[c]));
+      }
+    }
+    change = 0.0;
+    for (int c = 0; c < 6; ++c) {
+      change = std::max(change, std::abs(total[c] - last_total[c]));
+    }
+    last_total = total;
+    return size;
+  }
+
+  Packing packing;
+  Material material;
+  double dt;
+  LaneLayout layout;
+  LaneState state;
+  ForceField forces;
+  std::size_t next = 0; ///< node of the snapshot while grains are walked through
+  std::vector<Tensor6> grain;
+  Tensor6 last_total{};
+  double change = 0.0;
+};
+
+FrameStress::FrameStress(Packing packing, const Material& material, double dt)
+    : impl_(std::make_unique<Impl>(std::move(packing), material, dt)) {}
+FrameStress::~FrameStress() = default;
+
+std::vector<std::array<double, 6>> FrameStress::evaluate(const Snapshot& snapshot) {
+  Impl& in = *impl_;
+  if (snapshot.position.size() != in.packing.position.size()) {
+    throw std::invalid_argument(fmt::format("stress of a frame: {} nodes, but the packing has {}",
+                                            snapshot.position.size(), in.packing.position.size()));
+  }
+  in.place(snapshot);
+  double size = in.evaluate(snapshot, 0.0);
+  if (!snapshot.velocity.empty() && in.dt > 0.0) {
+    in.change = size;
+    for (int k = 0; k < max_iterations && in.change > relative_change * size; ++k) {
+      in.step_back(snapshot);
+      size = in.evaluate(snapshot, 0.5 * in.dt);
+    }
+  }
+  return in.grain;
+}
+
+} // namespace boba
