@@ -178,6 +178,58 @@ BENCHMARK(scattering_of_1024_grains)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
+/// Both ways to the same amplitudes, by size: range(0) 0: 64 grains of 303 nodes, 1: 64 of 5141, 2: 1024 of 5141;
+/// range(1): q_max in 0.01 / d. Counters: the other way's largest difference, relative to the root mean square.
+void scattering_both_ways(benchmark::State& state, bool transform) {
+  static const LatticePacking medium(4, 4, 4, 5141);
+  const LatticePacking& packing = state.range(0) == 0 ? small() : state.range(0) == 1 ? medium : large();
+  const ReciprocalLattice lattice(packing.box, 0.01 * static_cast<double>(state.range(1)));
+  ScatteringAmplitudes found;
+  for (auto _ : state) {
+    found = transform ? transformed_amplitudes(packing.box, packing.grains(), lattice)
+                      : summed_amplitudes(packing.box, packing.grains(), lattice);
+  }
+  state.counters["vectors"] = static_cast<double>(lattice.n_vectors());
+  if (transform && static_cast<double>(packing.nodes.size()) * static_cast<double>(lattice.n_vectors()) < 2e10) {
+    const ScatteringAmplitudes exact = summed_amplitudes(packing.box, packing.grains(), lattice);
+    double difference = 0.0, size = 0.0;
+    for (std::size_t v = 0; v < exact.intensity.size(); ++v) {
+      difference = std::max(difference, std::abs(std::sqrt(found.intensity[v]) - std::sqrt(exact.intensity[v])));
+      size += exact.intensity[v] / static_cast<double>(exact.intensity.size());
+    }
+    state.counters["error"] = difference / std::sqrt(size);
+  }
+}
+void scattering_by_transform(benchmark::State& state) {
+  scattering_both_ways(state, true);
+}
+void scattering_by_sums(benchmark::State& state) {
+  scattering_both_ways(state, false);
+}
+BENCHMARK(scattering_by_transform)
+    ->Args({0, 100})
+    ->Args({0, 300})
+    ->Args({1, 40})
+    ->Args({1, 100})
+    ->Args({1, 300})
+    ->Args({2, 40})
+    ->Args({2, 100})
+    ->Args({2, 300})
+    ->Unit(benchmark::kSecond)
+    ->Iterations(1)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK(scattering_by_sums)
+    ->Args({0, 100})
+    ->Args({0, 300})
+    ->Args({1, 40})
+    ->Args({1, 100})
+    ->Args({2, 40})
+    ->Unit(benchmark::kSecond)
+    ->Iterations(1)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
 void order_of_1024_grains(benchmark::State& state) {
   const auto centres = grain_centres(large().grains());
   for (auto _ : state) {

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/phase_sums.h"
 
+#include "bpm/measure/vector_clones.h"
+
 #include <cassert>
 #include <cmath>
 #include <numbers>
-
-// One binary for all machines: the loops are compiled for these instruction sets and chosen at start.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define BOBA_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define BOBA_VECTOR_CLONES
-#endif
 
 namespace boba::measure {
 

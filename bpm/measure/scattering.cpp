@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/scattering.h"
 
+#include "bpm/measure/grain_spectrum.h"
 #include "bpm/measure/parallel_loop.h"
 #include "bpm/measure/phase_sums.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <fmt/format.h>
@@ -57,9 +60,100 @@ void sum_range(const Box& box, const GrainNodes& grains, std::span<const Recipro
   }
 }
 
+/// Rows of one n1: they share the first direction's transform.
+std::vector<RowRange> slabs(const std::vector<ReciprocalRow>& rows) {
+  std::vector<RowRange> result;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (result.empty() || rows[r].n1 != rows[result.back().first].n1) {
+      result.push_back({r, r});
+    }
+    result.back().last = r + 1;
+  }
+  return result;
+}
+
+/// Sums over the grains so far, at every wave vector.
+struct RunningSums {
+  std::vector<double> re, im, form_factor;
+  explicit RunningSums(std::size_t n) : re(n, 0.0), im(n, 0.0), form_factor(n, 0.0) {}
+};
+
+/// Adds some grains at the wave vectors of one slab.
+void add_slab(const SpectrumPlan& plan, std::span<const SpectrumPlan::Block> blocks, std::span<const double> n_nodes,
+              std::span<const ReciprocalRow> rows, RunningSums& sums) {
+  const std::int64_t first = rows.front().first;
+  const auto n = static_cast<std::size_t>(rows.back().first + rows.back().size() - first);
+  thread_local std::vector<double> re, im;
+  re.resize(n);
+  im.resize(n);
+  for (std::size_t g = 0; g < blocks.size(); ++g) {
+    plan.transform(blocks[g], rows, re, im);
+    for (std::size_t v = 0; v < n; ++v) {
+      sums.re[first + v] += re[v];
+      sums.im[first + v] += im[v];
+      sums.form_factor[first + v] += (re[v] * re[v] + im[v] * im[v]) / n_nodes[g];
+    }
+  }
+}
+
+/// Products of the two ways for the whole packing, {transform, direct}.
+std::array<double, 2> costs(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice) {
+  const SpectrumPlan plan(box, lattice);
+  std::array<double, 2> total{};
+  for (int g = 0; g < grains.n_grains(); ++g) {
+    const auto nodes = grains.nodes_of(g);
+    Vector3 low = Vector3::Constant(1e300), high = -low;
+    for (const Vector3& x : nodes) {
+      const Vector3 s = box.to_fractional(x);
+      low = low.cwiseMin(s);
+      high = high.cwiseMax(s);
+    }
+    total[0] += nodes.empty() ? 0.0 : plan.cost(nodes.size(), plan.block_size(high - low));
+    total[1] += static_cast<double>(nodes.size()) * static_cast<double>(lattice.n_vectors());
+  }
+  return total;
+}
+
 } // namespace
 
+ScatteringAmplitudes transformed_amplitudes(const Box& box, const GrainNodes& grains,
+                                            const ReciprocalLattice& lattice) {
+  constexpr int grains_together = 32; // whose grids are held at once
+  const SpectrumPlan plan(box, lattice);
+  const std::vector<RowRange> ranges = slabs(lattice.rows());
+  const auto n_vectors = static_cast<std::size_t>(lattice.n_vectors());
+  RunningSums sums(n_vectors);
+  for (int begin = 0; begin < grains.n_grains(); begin += grains_together) {
+    const int n = std::min(grains_together, grains.n_grains() - begin);
+    std::vector<SpectrumPlan::Block> blocks(n);
+    std::vector<double> n_nodes(n);
+    parallel_loop(n, [&](std::int64_t g) {
+      const auto nodes = grains.nodes_of(begin + static_cast<int>(g));
+      blocks[g] = plan.spread(nodes);
+      n_nodes[g] = static_cast<double>(nodes.size());
+    });
+    parallel_loop(static_cast<std::int64_t>(ranges.size()), [&](std::int64_t i) {
+      const RowRange& range = ranges[i];
+      add_slab(plan, blocks, n_nodes, std::span(lattice.rows()).subspan(range.first, range.last - range.first), sums);
+    });
+  }
+  ScatteringAmplitudes amplitudes;
+  amplitudes.intensity.resize(n_vectors);
+  amplitudes.form_factor = std::move(sums.form_factor);
+  for (std::size_t v = 0; v < n_vectors; ++v) {
+    amplitudes.intensity[v] =
+        (sums.re[v] * sums.re[v] + sums.im[v] * sums.im[v]) / static_cast<double>(grains.n_nodes());
+    amplitudes.form_factor[v] /= grains.n_grains();
+  }
+  return amplitudes;
+}
+
 ScatteringAmplitudes scattering_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice) {
+  const auto [transformed, summed] = costs(box, grains, lattice);
+  return transformed < summed ? transformed_amplitudes(box, grains, lattice) : summed_amplitudes(box, grains, lattice);
+}
+
+ScatteringAmplitudes summed_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice) {
   ScatteringAmplitudes amplitudes;
   amplitudes.intensity.resize(lattice.n_vectors());
   amplitudes.form_factor.resize(lattice.n_vectors());

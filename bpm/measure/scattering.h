@@ -27,13 +27,22 @@ struct ScatteringAmplitudes {
   std::vector<double> intensity, form_factor;
 };
 
-/// Exact sums at every wave vector of the half lattice.
+/// Sums at every wave vector of the half lattice, by whichever of the two ways takes fewer products: the non-uniform
+/// transform of each grain (`SpectrumPlan`, relative error 1e-10), or for small grains and few wave vectors the exact sums.
+///
+/// Grains are summed in their order: the result does not depend on the number of threads.
+/// Source: docs/notation.md, "form factor"; "scattering, structure factor"; docs/performance-measure.md.
+ScatteringAmplitudes scattering_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice);
+
+/// The same by the non-uniform transform.
+ScatteringAmplitudes transformed_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice);
+
+/// The same by exact sums.
 ///
 /// The phases run along each row by recurrence, exp(i q(n3 + 1).r) = exp(i q(n3).r) exp(i b3.r), in the vector unit;
 /// cost: (number of nodes) x (number of wave vectors). The sums are formed in grain order: the result does not depend
 /// on the number of threads.
-/// Source: docs/notation.md, "form factor"; "scattering, structure factor".
-ScatteringAmplitudes scattering_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice);
+ScatteringAmplitudes summed_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice);
 
 /// P_F, I and S = I / P_F on the reciprocal lattice of the box up to q_max, averaged in shells of |q|.
 ///

@@ -62,11 +62,12 @@ TEST(ReciprocalLattice, HoldsEachPairOfOppositeVectorsOnceUpToQMax) {
   EXPECT_EQ(2 * lattice.n_vectors() + 1, expected);
 }
 
-TEST(Scattering, RecurrenceGivesTheDirectSums) {
+TEST(Scattering, BothWaysGiveTheSumsByDefinition) {
   const ThreeGrains packing;
   const ReciprocalLattice lattice(packing.box, 5.0);
-  const auto amplitudes = scattering_amplitudes(packing.box, packing.grains(), lattice);
-  double worst = 0.0;
+  const auto summed = summed_amplitudes(packing.box, packing.grains(), lattice);
+  const auto transformed = transformed_amplitudes(packing.box, packing.grains(), lattice);
+  double worst_sum = 0.0, worst_transform = 0.0;
   for (const ReciprocalRow& row : lattice.rows()) {
     for (int n3 = row.low; n3 <= row.high; ++n3) {
       const Vector3 q = lattice.q(row.n1, row.n2, n3);
@@ -74,13 +75,39 @@ TEST(Scattering, RecurrenceGivesTheDirectSums) {
       for (int g = 0; g < 3; ++g) {
         form_factor += direct_intensity(packing.grains().nodes_of(g), q) / 3.0;
       }
+      const double intensity = direct_intensity(packing.positions, q);
       const std::int64_t v = row.first + n3 - row.low;
-      worst = std::max(worst, std::abs(amplitudes.form_factor[v] - form_factor));
-      worst = std::max(worst, std::abs(amplitudes.intensity[v] - direct_intensity(packing.positions, q)));
+      worst_sum = std::max({worst_sum, std::abs(summed.form_factor[v] - form_factor),
+                            std::abs(summed.intensity[v] - intensity)});
+      worst_transform = std::max({worst_transform, std::abs(transformed.form_factor[v] - form_factor),
+                                  std::abs(transformed.intensity[v] - intensity)});
     }
   }
   EXPECT_GT(lattice.n_vectors(), 500);
-  EXPECT_LT(worst, 1e-10);
+  EXPECT_LT(worst_sum, 1e-10);
+  EXPECT_LT(worst_transform, 1e-9); // of values around 1: twice the relative error of an amplitude, and more at peaks
+}
+
+/// The transform's error does not depend on q: the deconvolution of its kernel is largest at the largest n.
+TEST(Scattering, TransformIsAccurateUpToTheEdgeOfTheLattice) {
+  const auto nodes = shapes::ball(400, 4.0, 11);
+  const std::vector<std::int64_t> first_node = {0, 400};
+  const Box box({3.0, -2.0, 0.5}, {15.0, 12.0, 14.0}, {-6.0, 5.0, 3.0});
+  const ReciprocalLattice lattice(box, 6.0);
+  const auto exact = summed_amplitudes(box, {nodes, first_node}, lattice);
+  const auto fast = transformed_amplitudes(box, {nodes, first_node}, lattice);
+  double worst_low = 0.0, worst_high = 0.0, mean = 0.0;
+  for (const ReciprocalRow& row : lattice.rows()) {
+    for (int n3 = row.low; n3 <= row.high; ++n3) {
+      const std::int64_t v = row.first + n3 - row.low;
+      const double error = std::abs(std::sqrt(exact.intensity[v]) - std::sqrt(fast.intensity[v]));
+      double& worst = lattice.q(row.n1, row.n2, n3).norm() > 5.5 ? worst_high : worst_low;
+      worst = std::max(worst, error);
+      mean += exact.intensity[v] / static_cast<double>(lattice.n_vectors());
+    }
+  }
+  EXPECT_LT(worst_low, 1e-10 * std::sqrt(mean));
+  EXPECT_LT(worst_high, 1e-10 * std::sqrt(mean));
 }
 
 TEST(Scattering, EquivalentCellsOfOneLatticeGiveTheSameCurves) {
