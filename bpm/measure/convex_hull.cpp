@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/convex_hull.h"
 
+#include "bpm/measure/farthest_nodes.h"
+
 #include <CGAL/Convex_hull_traits_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/convex_hull_3.h>
@@ -19,10 +21,6 @@ using Traits = CGAL::Convex_hull_traits_3<Kernel>;
 
 Point to_point(const Vector3& x) {
   return Point(x[0], x[1], x[2]);
-}
-
-bool before(const Vector3& a, const Vector3& b) {
-  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
 void check_finite(std::span<const Vector3> nodes) {
@@ -65,12 +63,17 @@ void check_dimension(const std::vector<Point>& points) {
 /// For each vertex the number of a node at exactly its position (the lowest, when nodes coincide).
 std::vector<int> find_nodes(std::span<const Vector3> nodes, const std::vector<int>& selected,
                             const std::vector<Vector3>& vertices) {
-  std::vector<int> order = selected;
-  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return before(nodes[i], nodes[j]); });
+  // Sorted by x alone, with the number beside it: equal x are rare.
+  std::vector<std::pair<double, int>> order(selected.size());
+  std::transform(selected.begin(), selected.end(), order.begin(), [&](int i) { return std::pair(nodes[i][0], i); });
+  std::sort(order.begin(), order.end());
   std::vector<int> found(vertices.size());
   for (std::size_t v = 0; v < vertices.size(); ++v) {
-    found[v] = *std::lower_bound(order.begin(), order.end(), vertices[v],
-                                 [&](int i, const Vector3& x) { return before(nodes[i], x); });
+    auto at = std::lower_bound(order.begin(), order.end(), std::pair(vertices[v][0], 0));
+    while (nodes[at->second] != vertices[v]) {
+      ++at;
+    }
+    found[v] = at->second;
   }
   return found;
 }
@@ -181,16 +184,7 @@ std::vector<Vector3> sphere_directions(int n) {
 
 /// A node that reaches farthest, for each direction; ascending, each once.
 std::vector<int> extreme_nodes(std::span<const Vector3> nodes, const std::vector<Vector3>& directions) {
-  const Eigen::Map<const Eigen::Matrix3Xd> x(nodes.front().data(), 3, static_cast<Eigen::Index>(nodes.size()));
-  const Eigen::Matrix<double, Eigen::Dynamic, 3> coordinates = x.transpose(); // each coordinate contiguous
-  std::vector<int> extreme;
-  Eigen::VectorXd reach(x.cols());
-  for (const Vector3& direction : directions) {
-    reach.noalias() =
-        coordinates.col(0) * direction[0] + coordinates.col(1) * direction[1] + coordinates.col(2) * direction[2];
-    const double farthest = reach.maxCoeff();
-    extreme.push_back(static_cast<int>(std::find(reach.begin(), reach.end(), farthest) - reach.begin()));
-  }
+  std::vector<int> extreme = farthest_nodes(nodes, directions);
   std::sort(extreme.begin(), extreme.end());
   extreme.erase(std::unique(extreme.begin(), extreme.end()), extreme.end());
   return extreme;

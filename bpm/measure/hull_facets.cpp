@@ -148,10 +148,12 @@ Facets grown_facets(const ConvexHull& hull, const FacetOptions& options) {
   std::priority_queue<Entry> queue;
   for (int t = 0; t < hull.n_triangles(); ++t) {
     grower.region_of(t);
-    queue.emplace(grower.area(), -t);
+    if (grower.area() >= min_area) { // the others can only shrink
+      queue.emplace(grower.area(), -t);
+    }
   }
   std::vector<std::vector<int>> groups;
-  while (!queue.empty() && queue.top().first >= min_area) {
+  while (!queue.empty()) {
     const int seed = -queue.top().second;
     queue.pop();
     if (grower.is_taken(seed)) {
@@ -164,7 +166,7 @@ Facets grown_facets(const ConvexHull& hull, const FacetOptions& options) {
         groups.push_back(region);
         grower.take(region);
       }
-    } else {
+    } else if (now.first >= min_area) {
       queue.push(now);
     }
   }
