@@ -3,6 +3,8 @@
 #include "bpm/grain/build_template.h"
 #include "bpm/grain/near_pairs.h"
 #include "bpm/grain/outline.h"
+#include "bpm/measure/convex_hull.h"
+#include "bpm/measure/hull_facets.h"
 
 #include <cmath>
 #include <complex>
@@ -73,6 +75,24 @@ TEST(BuildTemplate, SphereOfRadiusTenHasThePublishedCount) {
   EXPECT_NEAR(core / (4.0 / 3.0 * M_PI * 512.0), 1.226, 0.02);
   EXPECT_NEAR(static_cast<double>(grain.bonds.size()) / grain.n_nodes(), 7.0, 0.3);
   EXPECT_LT(largest_radius(grain), 10.2); // centred on the mean of its nodes, not on the point of the cut
+  // By the literal published rule a cut grain has several tens of facets before anything deforms it.
+  const measure::ConvexHull hull = measure::convex_hull(grain.position);
+  const measure::Facets facets = measure::transitive_facets(hull);
+  EXPECT_GE(facets.n_facets(), 50);
+  EXPECT_LE(facets.n_facets(), 90);
+  RecordProperty("transitive_facets", facets.n_facets());
+  RecordProperty("robust_facets", measure::grown_facets(hull).n_facets());
+}
+
+TEST(BuildTemplate, WalledSphereOfRadiusTenIsOneSingleFacetByThePublishedRule) {
+  const GrainTemplate grain = build_template({.surface = Surface::wall, .radius = 10.0});
+  EXPECT_NEAR(grain.n_nodes(), 5140, 51);
+  EXPECT_NEAR(largest_radius(grain), 9.57, 0.05);
+  const measure::ConvexHull hull = measure::convex_hull(grain.position);
+  const measure::Facets facets = measure::transitive_facets(hull);
+  EXPECT_EQ(facets.n_facets(), 1);
+  EXPECT_GT(facets.faceted_share(), 0.999);
+  EXPECT_EQ(measure::grown_facets(hull).n_facets(), 0); // the robust rule sees the ball
 }
 
 TEST(BuildTemplate, SmallCutSphereIsBondedAndForceFree) {
