@@ -52,17 +52,33 @@ void store_template(CheckpointData& data, const GrainTemplate& grain, const std:
   }
 }
 
+/// What a checkpoint holds is data: sums that fit do not mean that its parts fit together.
+void require(bool is_so, const std::string& what) {
+  if (!is_so) {
+    throw std::invalid_argument(what);
+  }
+}
+
+bool all_finite(const std::vector<double>& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+}
+
 GrainTemplate read_template(const CheckpointData& data, const std::string& name) {
   GrainTemplate grain;
   grain.position = vectors(data.real.at(name + "/position"));
   grain.reference_volume = data.real.at(name + "/volume").at(0);
   const std::vector<double>& r0 = data.real.at(name + "/r0");
   const std::vector<std::int64_t>& ends = data.integer.at(name + "/bonds");
+  require(ends.size() == 2 * r0.size() && !grain.position.empty(), name + " has bonds without ends, or no nodes");
+  require(all_finite(data.real.at(name + "/position")) && all_finite(r0), name + " holds numbers that are not finite");
   for (std::size_t b = 0; b < r0.size(); ++b) {
+    require(ends[2 * b] >= 0 && ends[2 * b] < ends[2 * b + 1] && ends[2 * b + 1] < grain.n_nodes() && r0[b] > 0.0,
+            name + " has a bond between nodes that are not there");
     grain.bonds.push_back({static_cast<int>(ends.at(2 * b)), static_cast<int>(ends.at(2 * b + 1)), r0[b]});
   }
   if (const auto period = data.real.find(name + "/period"); period != data.real.end()) {
     grain.period = vectors(period->second).at(0);
+    require(grain.period->allFinite() && grain.period->minCoeff() > 0.0, name + " has a period that is not positive");
   }
   return grain;
 }
@@ -95,15 +111,25 @@ Packing read_packing(const CheckpointData& data) {
   const std::vector<std::int64_t>& periodic = data.integer.at(p + "periodic");
   packing.box = Box(vectors(data.real.at(p + "origin")).at(0), Vector3::Ones(), Vector3::Zero(),
                     {periodic.at(0) != 0, periodic.at(1) != 0, periodic.at(2) != 0});
-  packing.box.set_h(Eigen::Map<const Matrix3>(data.real.at(p + "box").data()));
+  const std::vector<double>& h = data.real.at(p + "box");
+  require(h.size() == 9 && all_finite(h) && h[0] > 0.0 && h[4] > 0.0 && h[8] > 0.0 && h[1] == 0.0 && h[2] == 0.0 &&
+              h[5] == 0.0,
+          "the cell's vectors are not those of a cell");
+  packing.box.set_h(Eigen::Map<const Matrix3>(h.data()));
   const std::vector<std::int64_t>& grains = data.integer.at(p + "grains");
   const std::vector<double>& alpha = data.real.at(p + "alpha");
+  require(grains.size() == 3 * alpha.size() && !alpha.empty() && all_finite(alpha), "grains without a template or alpha");
   for (std::size_t g = 0; g < alpha.size(); ++g) {
+    require(grains[3 * g] >= 0 && grains[3 * g] < static_cast<std::int64_t>(packing.templates.size()),
+            "a grain names a template that is not there");
     packing.grains.push_back(
         {static_cast<int>(grains.at(3 * g)), static_cast<int>(grains.at(3 * g + 1)), alpha[g], grains.at(3 * g + 2)});
   }
   packing.id = data.integer.at(p + "id");
   packing.position = vectors(data.real.at(p + "position"));
+  const auto n = static_cast<std::size_t>(packing.first_nodes().back());
+  require(packing.position.size() == n && packing.id.size() == n && all_finite(data.real.at(p + "position")),
+          "positions or ids do not belong to the grains");
   packing.velocity.assign(packing.position.size(), Vector3::Zero());
   return packing;
 }
@@ -165,6 +191,10 @@ RunSetup setup_from(const LatestCheckpoint& checkpoint, const OutputFolder& fold
     restart.file = checkpoint.path.string();
     setup.restart = std::move(restart);
     return setup;
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: cannot be gone on from: {}", checkpoint.path.string(), error.what()));
   } catch (const std::out_of_range&) {
     throw InputError(fmt::format("{}: a part is missing; it was written by another version ({})",
                                  checkpoint.path.string(),

@@ -25,11 +25,12 @@ std::int64_t last_step_of(const RunSetup& setup, std::size_t writer) {
   return setup.restart && writer < setup.restart->last_steps.size() ? setup.restart->last_steps[writer] : -1;
 }
 
-FrameObserver::Write trajectory_writer(const RunSetup& setup, const Simulation& simulation, const FrameOutput& output) {
+FrameObserver::Write trajectory_writer(const RunSetup& setup, const Simulation& simulation, const FrameOutput& output,
+                                       std::int64_t last_step) {
   const Topology topology = simulation.packing().topology(true);
   const std::filesystem::path path = setup.folder.trajectory();
   if (setup.restart) {
-    auto writer = std::make_shared<TrajectoryWriter>(TrajectoryWriter::go_on(path, topology, setup.restart->step));
+    auto writer = std::make_shared<TrajectoryWriter>(TrajectoryWriter::go_on(path, topology, last_step));
     return [writer](const Snapshot& snapshot) { writer->write(snapshot); };
   }
   TrajectoryOrigin origin;
@@ -43,31 +44,33 @@ FrameObserver::Write trajectory_writer(const RunSetup& setup, const Simulation& 
   return [writer](const Snapshot& snapshot) { writer->write(snapshot); };
 }
 
-FrameObserver::Write dump_writer(const RunSetup& setup, std::shared_ptr<const Topology> topology) {
+FrameObserver::Write dump_writer(const RunSetup& setup, std::shared_ptr<const Topology> topology,
+                                 std::int64_t last_step) {
   const std::filesystem::path path = setup.folder.dump();
   if (setup.restart) {
-    truncate_lammps_dump(path, setup.restart->step);
+    truncate_lammps_dump(path, last_step);
   }
   const FileMode mode = setup.restart ? FileMode::append : FileMode::create;
   auto writer = std::make_shared<LammpsDumpWriter>(path, DumpLayout::viewer, mode);
   return [writer, topology](const Snapshot& snapshot) { writer->write(*topology, snapshot); };
 }
 
-FrameObserver::Write vtk_writer(const RunSetup& setup, std::shared_ptr<const Topology> topology) {
+FrameObserver::Write vtk_writer(const RunSetup& setup, std::shared_ptr<const Topology> topology,
+                                std::int64_t last_step) {
   const std::filesystem::path path = setup.folder.vtk() / "packing.pvd";
   std::filesystem::create_directories(setup.folder.vtk());
   auto series =
-      std::make_shared<VtkSeries>(setup.restart ? VtkSeries::go_on(path, setup.restart->step) : VtkSeries(path));
+      std::make_shared<VtkSeries>(setup.restart ? VtkSeries::go_on(path, last_step) : VtkSeries(path));
   return [series, topology](const Snapshot& snapshot) { series->write(*topology, snapshot); };
 }
 
 std::shared_ptr<MeasureTables> measure_tables(const RunSetup& setup, const Simulation& simulation,
-                                              const MeasurePlan& plan) {
+                                              const MeasurePlan& plan, std::int64_t last_step) {
   const Packing& packing = simulation.packing();
   const FileMode mode = setup.restart ? FileMode::append : FileMode::create;
   auto tables =
       std::make_shared<MeasureTables>(setup.folder.measures(), packing.topology(false), plan,
-                                      undeformed_grains(packing), mode, setup.restart ? setup.restart->step : -1);
+                                      undeformed_grains(packing), mode, last_step);
   if (setup.restart && plan.has(MeasureKind::motion)) {
     tables->restore_motion(setup.restart->motion);
   }
@@ -91,28 +94,30 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
     return Schedule(every, simulation.strain(), simulation.time());
   };
   const std::vector<std::string> columns = run_table_columns();
-  TableWriter table = setup.restart ? TableWriter::go_on(setup.folder.table(), columns, setup.restart->step)
+  TableWriter table = setup.restart ? TableWriter::go_on(setup.folder.table(), columns, last_step_of(setup, 0))
                                     : TableWriter(setup.folder.table(), columns);
   writers.table =
       std::make_unique<TableObserver>(std::move(table), schedule(plan.table), numbers, last_step_of(setup, 0));
 
   const auto topology = std::make_shared<const Topology>(simulation.packing().topology(false));
+  // Files are cut behind what the checkpoint knows of, not at its step: rows of the same step may have come later.
+  const auto last_step = [&] { return last_step_of(setup, writers.frames.size() + 1); };
   const auto add = [&](const FrameOutput& output, FrameObserver::Write write) {
     writers.frames.push_back(std::make_unique<FrameObserver>(
-        schedule(output.every), output.velocities, last_step_of(setup, writers.frames.size() + 1), std::move(write)));
+        schedule(output.every), output.velocities, last_step(), std::move(write)));
   };
   if (plan.trajectory) {
-    add(*plan.trajectory, trajectory_writer(setup, simulation, *plan.trajectory));
+    add(*plan.trajectory, trajectory_writer(setup, simulation, *plan.trajectory, last_step()));
   }
   if (plan.dump) {
-    add(*plan.dump, dump_writer(setup, topology));
+    add(*plan.dump, dump_writer(setup, topology, last_step()));
   }
   if (plan.vtk) {
-    add(*plan.vtk, vtk_writer(setup, topology));
+    add(*plan.vtk, vtk_writer(setup, topology, last_step()));
   }
   for (const SceneMeasure& entry : setup.scene.measures) {
     // Velocities tell the kinetic part of the stress apart.
-    const auto tables = measure_tables(setup, simulation, entry.plan);
+    const auto tables = measure_tables(setup, simulation, entry.plan, last_step());
     add({entry.every, entry.plan.has(MeasureKind::stress)}, [tables](const Snapshot& snapshot) { tables->add(snapshot); });
     if (entry.plan.has(MeasureKind::motion)) {
       writers.motion = tables;

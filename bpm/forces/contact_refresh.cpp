@@ -105,7 +105,8 @@ bool ContactList::set_reference(const MovedNode& moved, const LaneState& state) 
 
 void ContactList::find_pairs(const MovedNode& moved, const NetworkData& network,
                              std::vector<std::vector<SortedPair>>& found) const {
-  const auto [g, i] = moved;
+  const int g = moved.grain;
+  const std::int32_t i = moved.node;
   const Vector3 x = reference_of(g, i);
   // Nodes that have moved since the build are also found where they were: listed too often, never too rarely.
   std::vector<std::int32_t> nodes;

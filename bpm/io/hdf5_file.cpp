@@ -9,6 +9,7 @@
 #include <functional>
 #include <numeric>
 #include <stdexcept>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -71,15 +72,35 @@ std::string up_to_zero(const char* text, std::size_t length) {
 
 hid_t File::check(hid_t result, const std::string& doing) const {
   if (result < 0) {
-    throw std::runtime_error(fmt::format("{}: {} failed: {}", path_.string(), doing, reason()));
+    const std::string why = reason();
+    if (writable_ && id_ >= 0) {
+      let_go();
+    }
+    throw std::runtime_error(fmt::format("{}: {} failed: {}", path_.string(), doing, why));
   }
   return result;
+}
+
+void File::let_go() const {
+  // HDF5 cannot close a file that it could not write: it crashes, at the latest when the program ends. So from here on it
+  // writes into memory instead, which succeeds; the file on the disk stays as it was last flushed.
+  int* descriptor = nullptr;
+  if (H5Fget_vfd_handle(id_, H5P_DEFAULT, reinterpret_cast<void**>(&descriptor)) < 0) {
+    return;
+  }
+  const int memory = memfd_create("given up", MFD_CLOEXEC);
+  struct stat status = {};
+  if (memory >= 0 && fstat(*descriptor, &status) == 0) {
+    dup2(memory, *descriptor);
+    ::close(memory);
+  }
 }
 
 File File::create(const std::filesystem::path& path) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // failures are thrown, not printed
   File file;
   file.path_ = path;
+  file.writable_ = true;
   const Handle creation(H5Pcreate(H5P_FILE_CREATE));
   // Wide nodes in the index of chunks: it is split, which touches several places, only once in 1024 frames.
   H5Pset_istore_k(creation, 512);
@@ -89,9 +110,10 @@ File File::create(const std::filesystem::path& path) {
 }
 
 File File::open(const std::filesystem::path& path, bool writable) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // failures are thrown, not printed
   File file;
   file.path_ = path;
+  file.writable_ = writable;
   const Handle access = access_properties();
   file.id_ = Handle(
       file.check(H5Fopen(path.c_str(), writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access), "opening the HDF5 file"));
@@ -198,18 +220,24 @@ std::string File::read_text(const std::string& name) const {
   return up_to_zero(text.data(), text.size());
 }
 
+void File::close_dataset(Handle& dataset, const std::string& name) const {
+  check(H5Dclose(dataset.release()), "writing " + name);
+}
+
 void File::write_raw(const std::string& name, const void* values, hid_t type, hsize_t n, hsize_t width) const {
   const Handle space = width > 1 ? simple_space({n / width, width}) : simple_space({n});
-  const Handle dataset(
+  Handle dataset(
       check(H5Dcreate2(id_, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "making " + name));
   if (n > 0) {
     check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "writing " + name);
   }
+  close_dataset(dataset, name);
 }
 
 void File::rewrite_raw(const std::string& name, const void* values, hid_t type) const {
-  const Handle dataset(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), "opening " + name));
+  Handle dataset(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), "opening " + name));
   check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "writing " + name);
+  close_dataset(dataset, name);
 }
 
 void File::read_raw(const std::string& name, void* values, hid_t type) const {
@@ -271,7 +299,7 @@ void File::write_frame_raw(const std::string& name, hsize_t frame, const void* v
   if (extent[0] <= frame) {
     set_frames(name, frame + 1);
   }
-  const Handle dataset(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), "opening " + name));
+  Handle dataset(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), "opening " + name));
   const Handle space(H5Dget_space(dataset));
   std::vector<hsize_t> start(extent.size(), 0), count = extent;
   start[0] = frame;
@@ -279,6 +307,7 @@ void File::write_frame_raw(const std::string& name, hsize_t frame, const void* v
   H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
   const Handle memory = simple_space({n});
   check(H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, values), "writing " + name);
+  close_dataset(dataset, name);
 }
 
 void File::read_frame_raw(const std::string& name, hsize_t frame, void* values, hid_t type) const {

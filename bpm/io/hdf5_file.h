@@ -30,6 +30,8 @@ public:
     }
   }
   operator hid_t() const { return id_; }
+  /// Hands the identifier over; it is no longer closed here.
+  hid_t release() { return std::exchange(id_, H5I_INVALID_HID); }
 
 private:
   hid_t id_ = H5I_INVALID_HID;
@@ -131,8 +133,14 @@ private:
   void put_attribute(const std::string& object, const std::string& name, hid_t type, hid_t space,
                      const void* values) const;
 
+  /// Takes the file away from HDF5 after a failure.
+  void let_go() const;
+  /// Closes a dataset: what its cache still holds is written now, and a failure must not pass unseen.
+  void close_dataset(Handle& dataset, const std::string& name) const;
+
   std::filesystem::path path_;
   Handle id_;
+  bool writable_ = false;
 };
 
 } // namespace boba::hdf5

@@ -15,7 +15,7 @@ namespace boba {
 
 namespace {
 
-constexpr std::size_t chunk_size = 1 << 18;
+constexpr std::size_t chunk_size = 1 << 16;
 constexpr std::size_t longest_line = 1 << 20;
 
 /// A field for a message: shortened, and without bytes that would upset a terminal.

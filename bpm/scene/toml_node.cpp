@@ -123,6 +123,8 @@ TomlNode& array_entry(TomlNode& array, const std::string& name, const std::strin
 
 } // namespace
 
+TomlNode::TomlNode() = default;
+
 const TomlNode* TomlNode::find(const std::string& name) const {
   return const_cast<TomlNode*>(this)->find(name);
 }

@@ -15,6 +15,8 @@ namespace boba {
 struct TomlNode {
   enum class Kind { boolean, integer, real, text, array, table, other };
 
+  TomlNode(); // not inline: the members' type needs the complete class
+
   Kind kind = Kind::table;
   bool boolean = false;
   std::int64_t integer = 0;

@@ -1,30 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A run that was stopped, killed or given another number of threads ends as one that was left alone, bit for bit.
-#include "bpm/io/checkpoint.h"
-#include "bpm/io/trajectory.h"
-#include "tests/robustness/app/small_scene.h"
+#include "tests/robustness/app/same_run.h"
 
 #include <csignal>
+#include <cstdlib>
 #include <gtest/gtest.h>
+#include <random>
 
 namespace boba::test {
 namespace {
-
-void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b) {
-  EXPECT_EQ(table_without_speed(a / "table.csv"), table_without_speed(b / "table.csv"));
-  const TrajectoryReader first(a / "trajectory.h5"), second(b / "trajectory.h5");
-  ASSERT_EQ(first.steps(), second.steps());
-  for (std::int64_t frame = 0; frame < first.n_frames(); ++frame) {
-    const Snapshot x = first.snapshot(frame), y = second.snapshot(frame);
-    EXPECT_EQ(x.position, y.position) << "frame " << frame;
-    EXPECT_EQ(x.velocity, y.velocity) << "frame " << frame;
-    EXPECT_EQ(x.grain_stress, y.grain_stress) << "frame " << frame;
-  }
-  const CheckpointData end = latest_checkpoint(a / "checkpoints").data,
-                       other = latest_checkpoint(b / "checkpoints").data;
-  EXPECT_EQ(end.real, other.real);
-  EXPECT_EQ(end.integer, other.integer);
-}
 
 /// The same scene left alone, in `folder`/alone.
 void run_alone(const TemporaryFolder& folder, const std::vector<std::string>& more = {}) {
@@ -76,21 +60,39 @@ TEST(Resume, AfterSignals) {
   }
 }
 
+/// Killed again and again at random moments until it is through; BOBA_KILLS asks for more kills than a few.
 TEST(Resume, AfterBeingKilled) {
   const TemporaryFolder folder;
   folder.file("scene.toml", small_scene);
-  const std::vector<std::string> often{"--set", "output.checkpoint.every_time=15", "--set", "stage.2.strain=1.5"};
+  const std::vector<std::string> often{"--quiet", "--set", "output.checkpoint.every_time=15", "--set", "stage.2.strain=1.5",
+                                       "--set", "measure=[{what = \"motion, order\", every_strain = 0.05}]"};
   run_alone(folder, often);
-  std::vector<std::string> run{"run", "scene.toml", "--output", "killed"};
-  run.insert(run.end(), often.begin(), often.end());
-  ProgramResult result = boba(run, folder, Disturbance{0.15, SIGKILL, (folder / "killed/checkpoints").string()});
-  for (int i = 0; result.signal == SIGKILL && i < 12; ++i) {
-    result = boba({"resume", "killed"}, folder, Disturbance{0.1 + 0.03 * i, SIGKILL});
-    ASSERT_TRUE(result.signal == SIGKILL || result.exit_code == 0) << result.err;
+  const char* asked = std::getenv("BOBA_KILLS");
+  const int n_wanted = asked != nullptr ? std::atoi(asked) : 12;
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> moment(0.0, 0.35);
+  int n_kills = 0, n_rounds = 0;
+  while (n_kills < n_wanted) {
+    const std::string out = "killed" + std::to_string(n_rounds++);
+    std::vector<std::string> run{"run", "scene.toml", "--output", out};
+    run.insert(run.end(), often.begin(), often.end());
+    ProgramResult result =
+        boba(run, folder, Disturbance{moment(random), SIGKILL, (folder / out / "checkpoints/checkpoint-000000.boba").string()});
+    while (result.signal == SIGKILL) {
+      ++n_kills;
+      result = n_kills < n_wanted ? boba({"resume", out, "--quiet"}, folder, Disturbance{0.05 + moment(random), SIGKILL})
+                                  : boba({"resume", out, "--quiet"}, folder);
+      ASSERT_TRUE(result.signal == SIGKILL || result.exit_code == 0) << result.err;
+    }
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    expect_same_run(folder / "alone", folder / out);
+    for (const char* table : {"motion.csv", "grain_motion.csv", "order.csv"}) {
+      EXPECT_EQ(content_of(folder / "alone/measures" / table), content_of(folder / out / "measures" / table)) << table;
+    }
+    std::filesystem::remove_all(folder / out);
+    ASSERT_LT(n_rounds, 1000) << "the run ends before it is killed";
   }
-  result = boba({"resume", "killed"}, folder);
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  expect_same_run(folder / "alone", folder / "killed");
+  RecordProperty("kills", n_kills);
 }
 
 std::vector<std::filesystem::path> checkpoints_of(const std::filesystem::path& run) {
@@ -117,6 +119,31 @@ TEST(Resume, RefusesADamagedCheckpointByNameAndTakesTheOlderOne) {
   EXPECT_NE(resumed.err.find(files[1].filename().string()), std::string::npos) << resumed.err;
   EXPECT_NE(resumed.err.find(files[0].filename().string()), std::string::npos) << resumed.err;
   EXPECT_EQ(table_without_speed(folder / "alone/table.csv"), table);
+}
+
+/// Cut or with a flipped bit at every kilobyte: refused by name, the older one taken, the same end.
+TEST(Resume, AfterDamageAtEveryKilobyteOfTheCheckpoint) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  run_alone(folder, {"--quiet", "--set", "stage.2.strain=0.02"});
+  std::filesystem::copy(folder / "alone", folder / "kept", std::filesystem::copy_options::recursive);
+  const auto files = checkpoints_of(folder / "alone");
+  const std::string whole = content_of(files[1]);
+  for (std::size_t at = 0; at < whole.size(); at += 1024) {
+    std::string damaged = whole;
+    if (at / 1024 % 2 == 0) {
+      damaged.resize(at);
+    } else {
+      damaged[at] = static_cast<char>(damaged[at] ^ 16);
+    }
+    std::ofstream(files[1], std::ios::binary) << damaged;
+    const ProgramResult resumed = boba({"resume", "alone", "--quiet"}, folder);
+    ASSERT_EQ(resumed.exit_code, 0) << at << ": " << resumed.err;
+    ASSERT_NE(resumed.err.find(files[1].filename().string()), std::string::npos) << at << ": " << resumed.err;
+    expect_same_run(folder / "kept", folder / "alone");
+    std::filesystem::remove_all(folder / "alone");
+    std::filesystem::copy(folder / "kept", folder / "alone", std::filesystem::copy_options::recursive);
+  }
 }
 
 TEST(Resume, WithoutAWholeCheckpointIsWrongInput) {

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every key of every table of a scene: wrong type, missing, absurd. The schema says which keys there are and what they
+// may hold; whatever lies outside is refused with key, line and range.
+#include "bpm/io/input_error.h"
+#include "bpm/scene/scene.h"
+#include "bpm/scene/schema.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <map>
+#include <sstream>
+
+namespace boba {
+namespace {
+
+/// A scene that is right, with one line to be tried in the table of a section.
+class TrialScene {
+public:
+  TrialScene(const SceneSection& section, const std::string& key) : section_(section), key_(key) {}
+
+  /// The text with `line` in the table; without it the scene is right unless the key is needed.
+  std::string text(const std::string& line) const {
+    std::string text = section_.path.empty() ? line + "\n" : "";
+    const bool is_specimen = section_.kind == "specimen" || section_.kind == "press";
+    if (section_.path == "start") {
+      return text + table(line) + "[[stage]]\ntype = \"hold\"\ntime = 1.0\n";
+    }
+    if (!section_.path.empty() && section_.path != "stage") {
+      text += table(line);
+    }
+    text += "[[template]]\nname = \"t\"\nnodes = 60\n[[species]]\ntemplate = \"t\"\nalpha = 1.0\n";
+    text += is_specimen ? "count = 1\n" : "count = 2\n";
+    if (section_.kind == "insert" || section_.kind == "specimen") {
+      return text + table(line) + "[[stage]]\ntype = \"hold\"\ntime = 1.0\n";
+    }
+    text += is_specimen ? "[[stage]]\ntype = \"specimen\"\n" : "[[stage]]\ntype = \"insert\"\n";
+    return text + (section_.path == "stage" ? table(line) : "");
+  }
+
+  /// Number of the line that is tried.
+  static int line_number(const std::string& text, const std::string& line) {
+    return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(line)), '\n'));
+  }
+
+private:
+  std::string table(const std::string& line) const {
+    std::string text = section_.repeated ? "[[" + section_.path + "]]\n" : "[" + section_.path + "]\n";
+    if (!section_.kind.empty()) {
+      text += "type = \"" + section_.kind + "\"\n";
+    }
+    text += line + "\n";
+    for (const auto& [name, value] : companions()) {
+      if (name != key_) {
+        text += name + " = " + value + "\n";
+      }
+    }
+    return text;
+  }
+
+  /// What the table needs beside the key.
+  std::map<std::string, std::string> companions() const {
+    const std::string& path = section_.path;
+    if (path == "template") {
+      return {{"name", "\"u\""}};
+    }
+    if (path == "species") {
+      std::map<std::string, std::string> needed = {{"count", "2"}, {"template", "\"t\""}};
+      if (key_ != "poisson") {
+        needed["alpha"] = "2.0";
+      }
+      return needed;
+    }
+    if (path == "measure") {
+      return {{"what", "\"stress\""}};
+    }
+    if (path == "start") {
+      return key_.starts_with("lammps") ? std::map<std::string, std::string>{{"lammps_reference", "\"a.data\""}}
+                                        : std::map<std::string, std::string>{{"trajectory", "\"a.h5\""}};
+    }
+    const std::map<std::string, std::map<std::string, std::string>> of_stage = {
+        {"compress", {{"pressure", "0.1"}}},
+        {"hold", {{"time", "1.0"}, {"pressure", "0.1"}}},
+        {"shear", {{"rate", "1e-3"}, {"strain", "0.5"}, {"pressure", "0.1"}}},
+        {"press", {{"strain", "0.1"}}}};
+    const auto found = of_stage.find(section_.kind);
+    auto needed = found == of_stage.end() ? std::map<std::string, std::string>{} : found->second;
+    if (key_ == "normalised_pressure") {
+      needed.erase("pressure");
+    }
+    return needed;
+  }
+
+  const SceneSection& section_;
+  std::string key_;
+};
+
+std::string message(const std::string& text) {
+  try {
+    read_stored_scene(text, "scene.toml", {});
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+bool in_range(const SceneKey& key, double value) {
+  return value <= key.highest && (key.above_lowest ? value > key.lowest : value >= key.lowest);
+}
+
+/// Values that the key must refuse, as TOML.
+std::vector<std::string> wrong_values(const SceneKey& key) {
+  using Type = SceneKey::Type;
+  const bool is_number = key.type == Type::integer || key.type == Type::real;
+  std::vector<std::string> wrong = {"[1, 2]", "{ a = 1 }", "1979-05-27", "[]"};
+  if (key.type != Type::boolean) {
+    wrong.insert(wrong.end(), {"true", "false"});
+  }
+  if (key.type != Type::text && key.type != Type::choice) {
+    wrong.insert(wrong.end(), {"\"fast\"", "\"\"", "\"1\""});
+  } else {
+    wrong.insert(wrong.end(), {"3", "-1.5"});
+  }
+  if (key.type == Type::choice) {
+    wrong.insert(wrong.end(), {"\"\"", "\"no such thing\""});
+  }
+  if (key.type == Type::boolean) {
+    wrong.insert(wrong.end(), {"1", "0", "0.5"});
+  }
+  if (key.type == Type::vector3) {
+    wrong.insert(wrong.end(), {"[1, 2, 3, 4]", "[1, 2, nan]", "[1, 2, -1e300]", "[0, 0, 0]", "[\"a\", 1, 2]", "5"});
+  }
+  if (is_number) {
+    wrong.insert(wrong.end(), {"nan", "-nan", "inf", "-inf"});
+    for (const char* value : {"0", "-1", "-1e300", "1e300", "9223372036854775807", "-9223372036854775808", "1e-320"}) {
+      const bool is_whole = std::string(value).find('e') == std::string::npos;
+      if (!in_range(key, std::strtod(value, nullptr)) || (key.type == Type::integer && !is_whole)) {
+        wrong.emplace_back(value);
+      }
+    }
+  }
+  if (key.type == Type::integer) {
+    wrong.emplace_back("2.5");
+  }
+  return wrong;
+}
+
+TEST(SceneKeys, TheTrialScenesAreRight) {
+  for (const SceneSection& section : scene_schema()) {
+    EXPECT_EQ(message(TrialScene(section, "").text("")), "") << section.path << " " << section.kind;
+  }
+}
+
+TEST(SceneKeys, EveryWrongValueIsRefusedWithKeyLineAndRange) {
+  int n_tried = 0;
+  for (const SceneSection& section : scene_schema()) {
+    for (const SceneKey& key : section.keys) {
+      const TrialScene scene(section, key.name);
+      for (const std::string& value : wrong_values(key)) {
+        const std::string line = key.name + " = " + value;
+        const std::string text = scene.text(line);
+        const std::string refusal = message(text);
+        const std::string where = section.path + " " + section.kind + ": " + line + "\n" + refusal;
+        ASSERT_NE(refusal, "") << "was accepted: " << where;
+        EXPECT_NE(refusal.find(key.name), std::string::npos) << where;
+        EXPECT_NE(refusal.find(fmt::format("scene.toml:{}", TrialScene::line_number(text, line))), std::string::npos) << where;
+        EXPECT_NE(refusal.find(key.allowed()), std::string::npos) << where << "\nshould say: " << key.allowed();
+        EXPECT_EQ(refusal.find('\n'), std::string::npos) << where;
+        ++n_tried;
+      }
+    }
+  }
+  EXPECT_GT(n_tried, 800);
+  RecordProperty("tried", n_tried);
+}
+
+TEST(SceneKeys, EveryMissingKeyThatIsNeededIsNamed) {
+  int n_tried = 0;
+  for (const SceneSection& section : scene_schema()) {
+    for (const SceneKey& key : section.keys) {
+      if (key.required) {
+        const std::string refusal = message(TrialScene(section, key.name).text(""));
+        EXPECT_NE(refusal.find(key.name), std::string::npos) << section.path << " " << section.kind << "." << key.name << ": " << refusal;
+        EXPECT_NE(refusal.find("scene.toml"), std::string::npos) << refusal;
+        ++n_tried;
+      }
+    }
+  }
+  EXPECT_GE(n_tried, 6);
+}
+
+/// A path of a scene names a place below the folder the run is started in, whatever it is spelled like.
+TEST(SceneKeys, NoOutputOutsideTheFolder) {
+  for (const char* path : {"/tmp/x", "..", "../x", "a/../../x", "a/..", "./../x", "/", "", "//x", "a/./../../b"}) {
+    const std::string text = fmt::format("[output]\ndirectory = \"{}\"\n", path) +
+                             "[[template]]\nname = \"t\"\nnodes = 60\n[[species]]\ncount = 2\nalpha = 1.0\n"
+                             "[[stage]]\ntype = \"insert\"\n";
+    EXPECT_NE(message(text).find("directory"), std::string::npos) << path << ": " << message(text);
+  }
+}
+
+} // namespace
+} // namespace boba
