@@ -43,8 +43,9 @@ Slabs find_slabs(const GrainTemplate& cylinder, double thickness) {
 }
 
 /// Strains of the middle third by least squares over its nodes, and the areas.
-CylinderResult measure(const std::vector<Vector3>& reference, const std::vector<Vector3>& position, const Slabs& slabs,
-                       double density, double force) {
+CylinderResult measure(const GrainTemplate& cylinder, const std::vector<Vector3>& position, const Slabs& slabs,
+                       const BulkDensity& bulk, double force) {
+  const std::vector<Vector3>& reference = cylinder.position;
   const double third = slabs.free_height() / 3.0, low = slabs.low + third, high = slabs.high - third;
   std::vector<int> middle;
   Vector3 mean = Vector3::Zero(), mean_u = Vector3::Zero();
@@ -58,7 +59,11 @@ CylinderResult measure(const std::vector<Vector3>& reference, const std::vector<
   const auto count = static_cast<double>(middle.size());
   mean /= count;
   mean_u /= count;
-  CylinderResult result{.force = force, .free_height = slabs.free_height(), .density_area = count / (density * third)};
+  CylinderResult result{.force = force, .free_height = slabs.free_height(), .density_area = count / (bulk.nodes * third)};
+  for (const Bond& bond : cylinder.bonds) {
+    const double z = 0.5 * (reference[bond.i].z() + reference[bond.j].z());
+    result.bond_area += z > low && z < high ? bond.r0 * bond.r0 / (bulk.bonds * third) : 0.0;
+  }
   double zz = 0.0, uz = 0.0, rr = 0.0, ur = 0.0;
   for (const int n : middle) {
     const Vector3 x = reference[n] - mean, u = position[n] - reference[n] - mean_u;
@@ -75,7 +80,7 @@ CylinderResult measure(const std::vector<Vector3>& reference, const std::vector<
 
 } // namespace
 
-CylinderResult static_cylinder(const GrainTemplate& cylinder, const CylinderTest& test, double density) {
+CylinderResult static_cylinder(const GrainTemplate& cylinder, const CylinderTest& test, const BulkDensity& bulk) {
   const Slabs slabs = find_slabs(cylinder, test.clamp_thickness);
   NonlinearNetwork network(cylinder, test.alpha);
   network.hold(slabs.lower);
@@ -94,10 +99,10 @@ CylinderResult static_cylinder(const GrainTemplate& cylinder, const CylinderTest
   for (const int n : slabs.lower) {
     force -= 0.5 * forces[n].z();
   }
-  return measure(cylinder.position, network.position(), slabs, density, force);
+  return measure(cylinder, network.position(), slabs, bulk, force);
 }
 
-CylinderResult dynamic_cylinder(const GrainTemplate& cylinder, const CylinderTest& test, double density,
+CylinderResult dynamic_cylinder(const GrainTemplate& cylinder, const CylinderTest& test, const BulkDensity& bulk,
                                 double velocity, double settle) {
   const Slabs slabs = find_slabs(cylinder, test.clamp_thickness);
   Vector3 reach = Vector3::Zero();
@@ -117,7 +122,7 @@ CylinderResult dynamic_cylinder(const GrainTemplate& cylinder, const CylinderTes
                  {});
   simulation.run(1, HoldStage{.time = settle, .barostat = {}}, {});
   const auto ends = simulation.end_forces();
-  return measure(cylinder.position, simulation.snapshot().position, slabs, density, 0.5 * (ends[0] + ends[1]));
+  return measure(cylinder, simulation.snapshot().position, slabs, bulk, 0.5 * (ends[0] + ends[1]));
 }
 
 } // namespace boba::calibration
