@@ -7,11 +7,11 @@
 #include "calibration/network/alpha_sweep.h"
 #include "calibration/specimen/bulk_cut.h"
 #include "calibration/specimen/cylinder.h"
+#include "calibration/specimen/processor_time.h"
 
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
-#include <sys/resource.h>
 
 namespace boba::calibration {
 
@@ -44,12 +44,6 @@ void check_options(const SpecimenOptions& options) {
   if (options.samples < 1 || options.samples > 1000) {
     throw std::invalid_argument(fmt::format("samples = {} is outside the allowed 1 .. 1000", options.samples));
   }
-}
-
-double processor_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
 }
 
 /// The cylinders of one radius.

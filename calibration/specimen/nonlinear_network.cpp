@@ -4,31 +4,30 @@
 #include "bpm/grain/near_pairs.h"
 #include "bpm/laws/bond.h"
 #include "bpm/laws/contact.h"
+#include "bpm/laws/wall.h"
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <fmt/format.h>
-#include <petscsnes.h>
 #include <stdexcept>
 
 namespace boba::calibration {
 
 namespace {
 
-using NewtonSolver = PetscHandle<SNES, SNESDestroy>;
-
 constexpr double stabilising_share = 0.2; // of the elastic spring, taken off across a bond in compression at most
-constexpr double contact_margin = 0.3;    // d; pairs closer than d + margin are watched during a solve
 constexpr double k3 = 50.0;               // k/d^2, the engine's default
-constexpr int most_lists = 10;
+
+/// The identity without the held components.
+Matrix3 free_components(const std::array<bool, 3>& held) {
+  return Vector3(!held[0], !held[1], !held[2]).asDiagonal();
+}
 
 } // namespace
 
 NonlinearNetwork::NonlinearNetwork(const GrainTemplate& grain, double alpha)
     : alpha_(alpha), reference_(grain.position), position_(grain.position), period_(grain.period),
-      volume0_(reference_node_volumes(grain.n_nodes(), grain.bonds)), held_(grain.n_nodes(), 0) {
+      volume0_(reference_node_volumes(grain.n_nodes(), grain.bonds)), held_(grain.n_nodes(), Held{false, false, false}) {
   for (const Bond& bond : grain.bonds) {
     Vector3 cells = Vector3::Zero();
     if (period_) {
@@ -39,9 +38,40 @@ NonlinearNetwork::NonlinearNetwork(const GrainTemplate& grain, double alpha)
   n_bonds_ = links_.size();
 }
 
-void NonlinearNetwork::hold(const std::vector<int>& nodes) {
+void NonlinearNetwork::hold(const std::vector<int>& nodes, const Held& components) {
   for (const int node : nodes) {
-    held_.at(node) = 1;
+    held_.at(node) = components;
+  }
+}
+
+double NonlinearNetwork::wall_force(int wall, double z, double* stiffness) const {
+  const double distance = wall == 0 ? z - (*walls_)[0] : (*walls_)[1] - z, overlap = 1.0 - 2.0 * distance;
+  if (overlap <= 0.0) {
+    return 0.0;
+  }
+  if (stiffness) {
+    *stiffness += 2.0 * (1.0 + 3.0 * k3 * overlap * overlap);
+  }
+  return boba::wall_force(1.0, k3, 0.0, 1.0, distance, 0.0);
+}
+
+std::array<double, 2> NonlinearNetwork::wall_loads() const {
+  std::array<double, 2> load{};
+  for (const Vector3& x : position_) {
+    load[0] += wall_force(0, x.z(), nullptr);
+    load[1] += wall_force(1, x.z(), nullptr);
+  }
+  return load;
+}
+
+void NonlinearNetwork::linearise(const std::vector<Vector3>& position) {
+  linearised_ = states(position);
+  wall_spring_.assign(position.size(), 0.0);
+  if (walls_) {
+    for (std::size_t n = 0; n < position.size(); ++n) {
+      wall_force(0, position[n].z(), &wall_spring_[n]);
+      wall_force(1, position[n].z(), &wall_spring_[n]);
+    }
   }
 }
 
@@ -96,6 +126,11 @@ std::vector<Vector3> NonlinearNetwork::forces(const std::vector<Vector3>& positi
     force[links_[b].i] += f;
     force[links_[b].j] -= f;
   }
+  if (walls_) {
+    for (std::size_t n = 0; n < position.size(); ++n) {
+      force[n].z() += wall_force(0, position[n].z(), nullptr) - wall_force(1, position[n].z(), nullptr);
+    }
+  }
   return force;
 }
 
@@ -125,7 +160,23 @@ std::vector<Vector3> NonlinearNetwork::force_derivative(const std::vector<Vector
     derivative[link.i] += f;
     derivative[link.j] -= f;
   }
+  if (walls_ && !wall_spring_.empty()) {
+    for (std::size_t n = 0; n < derivative.size(); ++n) {
+      derivative[n].z() -= wall_spring_[n] * displacement[n].z();
+    }
+  }
   return derivative;
+}
+
+std::vector<Matrix3> NonlinearNetwork::node_virials() const {
+  std::vector<Matrix3> virial(position_.size(), Matrix3::Zero());
+  const std::vector<State> pairs = states(position_);
+  for (std::size_t b = 0; b < links_.size(); ++b) {
+    const Matrix3 half = -0.5 * pairs[b].force * pairs[b].r * pairs[b].e * pairs[b].e.transpose();
+    virial[links_[b].i] += half;
+    virial[links_[b].j] += half;
+  }
+  return virial;
 }
 
 Matrix3 NonlinearNetwork::stress() const {
@@ -146,22 +197,20 @@ void NonlinearNetwork::fill_pair_matrix(Mat matrix) const {
     const Matrix3 along = bond.e * bond.e.transpose();
     const Matrix3 block = spring * along + across * (Matrix3::Identity() - along), minus = -block;
     const PetscInt i = link.i, j = link.j;
-    const bool i_free = !held_[i], j_free = !held_[j];
-    if (i_free) {
-      check(MatSetValuesBlocked(matrix, 1, &i, 1, &i, block.data(), ADD_VALUES), "MatSetValuesBlocked");
-    }
-    if (j_free) {
-      check(MatSetValuesBlocked(matrix, 1, &j, 1, &j, block.data(), ADD_VALUES), "MatSetValuesBlocked");
-    }
-    const Matrix3 coupling = i_free && j_free ? minus : Matrix3(Matrix3::Zero());
-    check(MatSetValuesBlocked(matrix, 1, &i, 1, &j, coupling.data(), ADD_VALUES), "MatSetValuesBlocked");
-    check(MatSetValuesBlocked(matrix, 1, &j, 1, &i, coupling.data(), ADD_VALUES), "MatSetValuesBlocked");
+    const Matrix3 free_i = free_components(held_[i]), free_j = free_components(held_[j]);
+    const Matrix3 ii = free_i * block * free_i, jj = free_j * block * free_j, ij = free_i * minus * free_j,
+                  ji = free_j * minus * free_i;
+    check(MatSetValuesBlocked(matrix, 1, &i, 1, &i, ii.data(), ADD_VALUES), "MatSetValuesBlocked");
+    check(MatSetValuesBlocked(matrix, 1, &j, 1, &j, jj.data(), ADD_VALUES), "MatSetValuesBlocked");
+    check(MatSetValuesBlocked(matrix, 1, &i, 1, &j, ij.data(), ADD_VALUES), "MatSetValuesBlocked");
+    check(MatSetValuesBlocked(matrix, 1, &j, 1, &i, ji.data(), ADD_VALUES), "MatSetValuesBlocked");
   }
-  const Matrix3 identity = Matrix3::Identity();
   for (PetscInt n = 0; n < n_nodes(); ++n) {
-    if (held_[n]) {
-      check(MatSetValuesBlocked(matrix, 1, &n, 1, &n, identity.data(), ADD_VALUES), "MatSetValuesBlocked");
+    Matrix3 diagonal = Matrix3::Identity() - free_components(held_[n]);
+    if (!wall_spring_.empty() && !held_[n][2]) {
+      diagonal(2, 2) += wall_spring_[n];
     }
+    check(MatSetValuesBlocked(matrix, 1, &n, 1, &n, diagonal.data(), ADD_VALUES), "MatSetValuesBlocked");
   }
   check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY), "MatAssemblyBegin");
   check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY), "MatAssemblyEnd");
@@ -199,170 +248,6 @@ int NonlinearNetwork::n_contacts() const {
   const std::vector<State> pairs = states(position_);
   return static_cast<int>(std::count_if(pairs.begin() + static_cast<std::ptrdiff_t>(n_bonds_), pairs.end(),
                                         [](const State& pair) { return pair.r < 1.0; }));
-}
-
-/// What PETSc calls back.
-struct SnesGlue {
-  NonlinearNetwork& network;
-  Mat pair_matrix;
-
-  std::vector<Vector3> positions(Vec displacement) const {
-    const double* u = nullptr;
-    check(VecGetArrayRead(displacement, &u), "VecGetArrayRead");
-    std::vector<Vector3> x = network.position_;
-    for (int n = 0; n < network.n_nodes(); ++n) {
-      x[n] += Eigen::Map<const Vector3>(u + 3 * n);
-    }
-    check(VecRestoreArrayRead(displacement, &u), "VecRestoreArrayRead");
-    return x;
-  }
-
-  void write(const std::vector<Vector3>& values, double sign, Vec held_values, Vec out) const {
-    double* entries = nullptr;
-    const double* held = nullptr;
-    check(VecGetArrayWrite(out, &entries), "VecGetArrayWrite");
-    check(VecGetArrayRead(held_values, &held), "VecGetArrayRead");
-    for (int n = 0; n < network.n_nodes(); ++n) {
-      for (int c = 0; c < 3; ++c) {
-        entries[3 * n + c] = network.held_[n] ? held[3 * n + c] : sign * values[n][c];
-      }
-    }
-    check(VecRestoreArrayRead(held_values, &held), "VecRestoreArrayRead");
-    check(VecRestoreArrayWrite(out, &entries), "VecRestoreArrayWrite");
-  }
-
-  static PetscErrorCode residual(SNES, Vec displacement, Vec out, void* context) {
-    const auto* self = static_cast<const SnesGlue*>(context);
-    self->write(self->network.forces(self->positions(displacement)), -1.0, displacement, out);
-    return 0;
-  }
-
-  static PetscErrorCode jacobian(SNES, Vec displacement, Mat, Mat pair, void* context) {
-    auto* self = static_cast<SnesGlue*>(context);
-    self->network.linearised_ = self->network.states(self->positions(displacement));
-    self->network.fill_pair_matrix(pair);
-    return 0;
-  }
-
-  static PetscErrorCode multiply(Mat matrix, Vec in, Vec out) {
-    SnesGlue* self = nullptr;
-    PetscCall(MatShellGetContext(matrix, &self));
-    std::vector<Vector3> u(self->network.n_nodes());
-    const double* entries = nullptr;
-    PetscCall(VecGetArrayRead(in, &entries));
-    for (int n = 0; n < self->network.n_nodes(); ++n) {
-      u[n] = self->network.held_[n] ? Vector3(Vector3::Zero()) : Vector3(Eigen::Map<const Vector3>(entries + 3 * n));
-    }
-    PetscCall(VecRestoreArrayRead(in, &entries));
-    self->write(self->network.force_derivative(u), -1.0, in, out);
-    return 0;
-  }
-};
-
-namespace {
-
-Matrix empty_pair_matrix(int n_nodes, const std::vector<int>& blocks_in_row) {
-  Matrix matrix;
-  check(MatCreateSeqBAIJ(PETSC_COMM_SELF, 3, 3 * n_nodes, 3 * n_nodes, 0, blocks_in_row.data(), matrix.address()),
-        "MatCreateSeqBAIJ");
-  check(MatSetOption(matrix, MAT_ROW_ORIENTED, PETSC_FALSE), "MatSetOption");
-  return matrix;
-}
-
-NullSpace translations(Vec like) {
-  std::array<Vector, 3> direction;
-  std::array<Vec, 3> raw{};
-  for (int c = 0; c < 3; ++c) {
-    check(VecDuplicate(like, direction[c].address()), "VecDuplicate");
-    check(VecStrideSet(direction[c], c, 1.0), "VecStrideSet");
-    check(VecNormalize(direction[c], nullptr), "VecNormalize");
-    raw[c] = direction[c];
-  }
-  NullSpace space;
-  check(MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE, 3, raw.data(), space.address()), "MatNullSpaceCreate");
-  return space;
-}
-
-void configure(SNES newton, double tolerance) {
-  check(SNESSetType(newton, SNESNEWTONLS), "SNESSetType");
-  check(SNESSetTolerances(newton, tolerance, 0.0, 0.0, 60, 10000), "SNESSetTolerances");
-  KSP linear = nullptr;
-  PC preconditioner = nullptr;
-  check(SNESGetKSP(newton, &linear), "SNESGetKSP");
-  check(KSPSetType(linear, KSPGMRES), "KSPSetType");
-  check(KSPGMRESSetRestart(linear, 60), "KSPGMRESSetRestart");
-  check(KSPSetTolerances(linear, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 2000), "KSPSetTolerances");
-  check(KSPGetPC(linear, &preconditioner), "KSPGetPC");
-  check(PCSetType(preconditioner, PCILU), "PCSetType");
-  check(PCFactorSetShiftType(preconditioner, MAT_SHIFT_NONZERO), "PCFactorSetShiftType");
-  check(SNESSetConvergenceHistory(newton, nullptr, nullptr, 100, PETSC_TRUE), "SNESSetConvergenceHistory");
-  check(SNESSetOptionsPrefix(newton, "specimen_"), "SNESSetOptionsPrefix");
-  check(SNESSetFromOptions(newton), "SNESSetFromOptions");
-}
-
-void require_convergence(SNES newton) {
-  SNESConvergedReason reason{};
-  check(SNESGetConvergedReason(newton, &reason), "SNESGetConvergedReason");
-  if (reason > 0) {
-    return;
-  }
-  PetscReal* history = nullptr;
-  PetscInt length = 0;
-  check(SNESGetConvergenceHistory(newton, &history, nullptr, &length), "SNESGetConvergenceHistory");
-  std::string end;
-  for (PetscInt n = std::max<PetscInt>(0, length - 5); n < length; ++n) {
-    end += fmt::format("{}{:.3e}", end.empty() ? "" : ", ", history[n]);
-  }
-  throw std::runtime_error(
-      fmt::format("the static solve did not converge ({}); last residuals: {}", SNESConvergedReasons[reason], end));
-}
-
-} // namespace
-
-void NonlinearNetwork::relax(double tolerance) {
-  for (int list = 0; list < most_lists; ++list) {
-    find_contacts();
-    const std::vector<Vector3> before = position_;
-    relax_once(tolerance);
-    const auto still_valid = [](const Vector3& a, const Vector3& b) { return (a - b).norm() < 0.5 * contact_margin; };
-    if (std::equal(before.begin(), before.end(), position_.begin(), still_valid)) {
-      return;
-    }
-  }
-  throw std::runtime_error("the static solve moves nodes too far for its list of contacts; take smaller steps");
-}
-
-void NonlinearNetwork::relax_once(double tolerance) {
-  std::vector<int> blocks_in_row(n_nodes(), 1);
-  for (const Link& link : links_) {
-    ++blocks_in_row[link.i];
-    ++blocks_in_row[link.j];
-  }
-  const Matrix pair = empty_pair_matrix(n_nodes(), blocks_in_row);
-  SnesGlue glue{*this, pair};
-  const int n = 3 * n_nodes();
-  Matrix shell;
-  check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &glue, shell.address()), "MatCreateShell");
-  check(MatShellSetOperation(shell, MATOP_MULT, reinterpret_cast<void (*)()>(SnesGlue::multiply)),
-        "MatShellSetOperation");
-  Vector u, r;
-  check(VecCreateSeq(PETSC_COMM_SELF, n, u.address()), "VecCreateSeq");
-  check(VecSetBlockSize(u, 3), "VecSetBlockSize");
-  check(VecDuplicate(u, r.address()), "VecDuplicate");
-  if (period_) {
-    const NullSpace space = translations(u);
-    check(MatSetNullSpace(shell, space), "MatSetNullSpace");
-    check(MatSetTransposeNullSpace(shell, space), "MatSetTransposeNullSpace");
-  }
-  NewtonSolver newton;
-  check(SNESCreate(PETSC_COMM_SELF, newton.address()), "SNESCreate");
-  check(SNESSetFunction(newton, r, SnesGlue::residual, &glue), "SNESSetFunction");
-  check(SNESSetJacobian(newton, shell, pair, SnesGlue::jacobian, &glue), "SNESSetJacobian");
-  configure(newton, tolerance * std::sqrt(static_cast<double>(n)));
-  check(SNESSolve(newton, nullptr, u), "SNESSolve");
-  require_convergence(newton);
-  position_ = glue.positions(u);
-  linearised_.clear();
 }
 
 } // namespace boba::calibration

@@ -5,6 +5,7 @@
 #include "calibration/network/petsc_handle.h"
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,9 +19,12 @@ using Matrix3 = Eigen::Matrix3d;
 ///
 /// Positions of the nodes and, for a periodic network, the cell matrix h = F diag(period); some nodes may be held.
 /// `relax` finds the positions at which no free node feels a force: PETSc SNES with the analytic Jacobian. Contacts are
-/// no part of the model; a state in which unbonded nodes come closer than d is refused.
+/// those of unbonded nodes closer than d, and of nodes at two walls across z (bpm/laws/contact.h, wall.h).
 class NonlinearNetwork {
 public:
+  static constexpr double contact_margin = 0.3; ///< d; pairs closer than d + margin are watched during a solve
+  using Held = std::array<bool, 3>;
+
   NonlinearNetwork(const GrainTemplate& grain, double alpha);
 
   int n_nodes() const { return static_cast<int>(position_.size()); }
@@ -29,7 +33,15 @@ public:
   /// Moves the cell from its present deformation to F, all nodes with it.
   void deform_cell(const Matrix3& deformation);
   void move(int node, const Vector3& displacement) { position_[node] += displacement; }
-  void hold(const std::vector<int>& nodes);
+  void set_positions(std::vector<Vector3> position) { position_ = std::move(position); }
+  void hold(const std::vector<int>& nodes, const Held& components = {true, true, true});
+  /// Rigid planes across z at the heights low and high (d).
+  void set_walls(double low, double high) { walls_ = {low, high}; }
+  /// Forces on the lower and on the upper wall, away from the body (k d).
+  std::array<double, 2> wall_loads() const;
+  /// Holds back rigid motions without a force at any single node: their part of the forces is taken out. What is held:
+  /// x, y, z, then the turns about them.
+  void hold_steady(const std::array<bool, 6>& motions) { steady_ = motions; }
 
   /// Forces of the bonds on every node at the given positions (k d).
   std::vector<Vector3> forces(const std::vector<Vector3>& position) const;
@@ -37,6 +49,9 @@ public:
   std::vector<Vector3> force_derivative(const std::vector<Vector3>& displacement) const;
   /// Cauchy stress -(1/Vol) sum f r e e^T over the volume of the deformed cell, tension positive (k/d).
   Matrix3 stress() const;
+
+  /// Each node's share (half of every pair) of -sum f r e e^T (k d): its stress times its volume, tension positive.
+  std::vector<Matrix3> node_virials() const;
 
   /// Unbonded pairs closer than d at present.
   int n_contacts() const;
@@ -57,6 +72,9 @@ private:
     double spring;    // -df/dr at constant volumes
   };
   std::vector<State> states(const std::vector<Vector3>& position) const;
+  void linearise(const std::vector<Vector3>& position);
+  /// Force of a wall (0 lower, 1 upper) on a node at height z, away from the wall; adds its slope to *stiffness.
+  double wall_force(int wall, double z, double* stiffness) const;
   void fill_pair_matrix(Mat matrix) const;
   /// Unbonded pairs closer than d + margin as links without reference length, appended behind the bonds.
   void find_contacts();
@@ -71,8 +89,11 @@ private:
   std::vector<Link> links_; // n_bonds_ bonds sorted by (i, j), then the pairs that may touch
   std::size_t n_bonds_ = 0;
   std::vector<double> volume0_;
-  std::vector<char> held_;
+  std::vector<Held> held_;
+  std::optional<std::array<double, 2>> walls_;
+  std::array<bool, 6> steady_{};
   std::vector<State> linearised_; // where the Jacobian was taken
+  std::vector<double> wall_spring_;
 };
 
 } // namespace boba::calibration
