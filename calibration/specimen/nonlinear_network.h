@@ -56,8 +56,13 @@ public:
   /// Unbonded pairs closer than d at present.
   int n_contacts() const;
 
-  /// \throws std::runtime_error (with the residual history's end) when Newton's method does not converge.
+  /// Newton's method; where it fails (a node snaps through to another place), damped motion first and Newton again.
+  /// \throws std::runtime_error (with the residual history's end) when that does not converge either.
   void relax(double tolerance = 1e-8);
+  /// Moves the free nodes by damped motion of unit masses for a number of steps of 0.1 tau.
+  void creep(int steps);
+  /// How often relax() needed damped motion so far.
+  int n_creeps() const { return n_creeps_; }
 
 private:
   struct Link {
@@ -78,7 +83,7 @@ private:
   void fill_pair_matrix(Mat matrix) const;
   /// Unbonded pairs closer than d + margin as links without reference length, appended behind the bonds.
   void find_contacts();
-  void relax_once(double tolerance);
+  void newton(double tolerance);
   Matrix3 cell() const;
   friend struct SnesGlue;
 
@@ -92,6 +97,7 @@ private:
   std::vector<Held> held_;
   std::optional<std::array<double, 2>> walls_;
   std::array<bool, 6> steady_{};
+  int n_creeps_ = 0;
   std::vector<State> linearised_; // where the Jacobian was taken
   std::vector<double> wall_spring_;
 };

@@ -17,7 +17,8 @@ namespace {
 using NewtonSolver = PetscHandle<SNES, SNESDestroy>;
 
 constexpr double contact_margin = NonlinearNetwork::contact_margin;
-constexpr int most_lists = 10;
+constexpr int most_lists = 20;   // of contacts, in one relaxation
+constexpr int most_creeps = 6, creep_steps = 1200, steps_a_list = 20;
 
 } // namespace
 
@@ -152,11 +153,44 @@ void require_convergence(SNES newton) {
 
 } // namespace
 
+void NonlinearNetwork::creep(int steps) {
+  constexpr double dt = 0.1, drag = 0.05; // tau; 1/tau, critical for waves of the length of a grain
+  const RigidMotions rigid(position_, steady_);
+  std::vector<Vector3> velocity(position_.size(), Vector3::Zero());
+  for (int s = 0; s < steps; ++s) {
+    if (s % steps_a_list == 0) {
+      find_contacts();
+    }
+    std::vector<Vector3> force = forces(position_);
+    for (std::size_t n = 0; n < force.size(); ++n) {
+      for (int c = 0; c < 3; ++c) {
+        force[n][c] = held_[n][c] ? 0.0 : force[n][c];
+      }
+    }
+    rigid.take_out(force);
+    for (std::size_t n = 0; n < force.size(); ++n) {
+      velocity[n] = (1.0 - drag * dt) * velocity[n] + dt * force[n];
+      position_[n] += dt * velocity[n];
+    }
+  }
+}
+
 void NonlinearNetwork::relax(double tolerance) {
+  int creeps = 0;
   for (int list = 0; list < most_lists; ++list) {
     find_contacts();
     const std::vector<Vector3> before = position_;
-    relax_once(tolerance);
+    try {
+      newton(tolerance);
+    } catch (const std::runtime_error&) {
+      if (++creeps > most_creeps) {
+        throw;
+      }
+      position_ = before;
+      creep(creep_steps);
+      ++n_creeps_;
+      continue;
+    }
     const auto still_valid = [](const Vector3& a, const Vector3& b) { return (a - b).norm() < 0.5 * contact_margin; };
     if (std::equal(before.begin(), before.end(), position_.begin(), still_valid)) {
       return;
@@ -165,7 +199,7 @@ void NonlinearNetwork::relax(double tolerance) {
   throw std::runtime_error("the static solve moves nodes too far for its list of contacts; take smaller steps");
 }
 
-void NonlinearNetwork::relax_once(double tolerance) {
+void NonlinearNetwork::newton(double tolerance) {
   std::vector<int> blocks_in_row(n_nodes(), 1);
   for (const Link& link : links_) {
     ++blocks_in_row[link.i];

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibration/compare/continuum_program.h"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fstream>
+#include <spawn.h>
+#include <sstream>
+#include <stdexcept>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace boba::calibration {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path program() {
+  const fs::path path = fs::read_symlink("/proc/self/exe").parent_path() / "boba-continuum";
+  if (!fs::exists(path)) {
+    throw std::runtime_error(fmt::format("{}: there is no such program; build the target boba-continuum", path.string()));
+  }
+  return path;
+}
+
+/// Exit code; both streams go to `log`.
+int run(std::vector<std::string> words, const fs::path& log) {
+  std::vector<char*> argv;
+  for (std::string& word : words) {
+    argv.push_back(word.data());
+  }
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  posix_spawn_file_actions_adddup2(&actions, 1, 2);
+  pid_t child = 0;
+  int status = 0;
+  const int failed = posix_spawn(&child, argv[0], &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0 || waitpid(child, &status, 0) != child) {
+    throw std::runtime_error(fmt::format("{}: cannot be started: {}", words[0], std::strerror(failed)));
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+std::string text_of(const fs::path& file) {
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+std::vector<std::string> command_line(const std::string& problem, const ContinuumModel& model, const fs::path& folder) {
+  std::vector<std::string> words = {program().string(),
+                                    problem,
+                                    fmt::format("--radius={:.10g}", model.radius),
+                                    fmt::format("--young={:.10g}", model.young),
+                                    fmt::format("--poisson={:.10g}", model.poisson),
+                                    "--output=" + folder.string(),
+                                    "--force"};
+  if (model.c1 > 0.0) {
+    words.insert(words.end(), {"--interface=compliant", fmt::format("--c1={:.10g}", model.c1),
+                               fmt::format("--c3={:.10g}", model.c3)});
+  }
+  if (!model.law.empty()) {
+    words.insert(words.end(), {"--kinematics=finite", "--law=" + model.law});
+  }
+  if (model.law == "foam") {
+    words.insert(words.end(), {"--fit=" + model.compression.string(), "--fit-terms=2"});
+  }
+  words.insert(words.end(), model.more.begin(), model.more.end());
+  return words;
+}
+
+} // namespace
+
+nlohmann::json run_continuum(const std::string& problem, const ContinuumModel& model, const std::string& load_option,
+                             std::vector<double> loads, const fs::path& folder) {
+  const fs::path own = folder / (problem + "_" + model.name), log = folder / (problem + "_" + model.name + ".log");
+  fs::create_directories(own);
+  while (!loads.empty()) {
+    std::vector<std::string> words = command_line(problem, model, own);
+    words.push_back(fmt::format("--{}={:.10g}", load_option, fmt::join(loads, ",")));
+    const int code = run(words, log);
+    if (code == 0) {
+      return nlohmann::json::parse(text_of(own / "summary.json")).at("loads");
+    }
+    if (code != 1) { // 1: an iteration that did not settle
+      throw std::runtime_error(fmt::format("boba-continuum {} ended with code {}: {}", problem, code, text_of(log)));
+    }
+    loads.pop_back();
+  }
+  return nlohmann::json::array();
+}
+
+} // namespace boba::calibration

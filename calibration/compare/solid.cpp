@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibration/compare/solid.h"
+
+#include "calibration/network/network_stiffness.h"
+#include "calibration/specimen/uniaxial_curve.h"
+
+#include <fmt/format.h>
+#include <fstream>
+#include <stdexcept>
+
+namespace boba::calibration {
+
+Solid calibrate_solid(const GrainTemplate& box, double alpha, const std::filesystem::path& folder) {
+  Solid solid{.alpha = alpha};
+  solid.constants = isotropic_part(relaxed_stiffness(LinearNetwork(box), {alpha}).front().stiffness);
+  solid.compression = folder / fmt::format("compression_{:g}.csv", alpha);
+  std::ofstream file(solid.compression);
+  file << "# compressive strain, compressive nominal stress (k/d), lateral strain\n";
+  for (const UniaxialPoint& point :
+       uniaxial_curve(box, alpha, {-0.001, -0.03, -0.06, -0.09, -0.12, -0.15, -0.175, -0.2})) {
+    file << fmt::format("{:.8g},{:.8g},{:.8g}\n", 1.0 - point.axial_stretch, -point.stress, point.lateral_stretch - 1.0);
+  }
+  file.close();
+  if (!file) {
+    throw std::runtime_error("cannot write " + solid.compression.string());
+  }
+  return solid;
+}
+
+} // namespace boba::calibration
