@@ -19,5 +19,6 @@ Command add_find(CLI::App& app);
 Command add_limit(CLI::App& app);
 Command add_strain(CLI::App& app);
 Command add_specimen(CLI::App& app);
+Command add_compare(CLI::App& app);
 
 } // namespace boba::calibration

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// boba-calibrate: from the bonds (k, alpha) to the solid (E, nu) and back.
+// boba-calibrate: from the bonds (k, alpha) to the solid (E, nu) and back; particles against the continuum.
 #include "calibration/app/commands.h"
 #include "calibration/network/petsc_handle.h"
 
@@ -13,7 +13,8 @@ int main(int argc, char** argv) {
   CLI::App app("From the bonds (k, alpha) to the elastic constants (E, nu) and back.", "boba-calibrate");
   app.require_subcommand(1);
   const std::vector<Command> commands = {add_table(app), add_make_table(app), add_find(app),
-                                         add_limit(app), add_strain(app),     add_specimen(app)};
+                                         add_limit(app), add_strain(app),     add_specimen(app),
+                                         add_compare(app)};
   try {
     app.parse(argc, argv);
     const PetscSession petsc;
