@@ -112,7 +112,7 @@ json compare_cylinder(const ComparisonSettings& settings) {
   json document = comparison_head("cylinder", settings, "finite");
   const BulkDensity bulk = bulk_density(settings.bulk);
   for (const double alpha : settings.alphas) {
-    const Solid solid = solid_of(settings, alpha);
+    const Solid solid = solid_of(settings, alpha, 1.2 * settings.loads.back());
     for (const CylinderEnds ends : {CylinderEnds::bonded, CylinderEnds::sliding}) {
       const char* setup = ends == CylinderEnds::bonded ? "bonded" : "sliding";
       if (settings.log) {

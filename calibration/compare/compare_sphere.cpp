@@ -15,6 +15,7 @@ namespace {
 
 using nlohmann::json;
 
+// Strains under a contact are about 0.4 a/R at most where it matters, a/R = sqrt(approach / R).
 constexpr double slab_pressure = 0.1; // of E / (1 - nu^2): the mean pressure of a contact at approach / R = 0.1
 
 const char* word(Press press) {
@@ -279,7 +280,7 @@ json compare_sphere(const ComparisonSettings& settings) {
   json document = comparison_head("sphere", settings, "finite_layer");
   const std::vector<GrainTemplate> grains = grains_of(settings);
   for (const double alpha : settings.alphas) {
-    const Solid solid = solid_of(settings, alpha);
+    const Solid solid = solid_of(settings, alpha, 0.4 * std::sqrt(settings.loads.back()));
     const Surface surface = surface_of(settings, solid, grains.front());
     SurfaceRule place = surface.springs;
     place.radius = surface.radius;

@@ -38,11 +38,11 @@ json comparison_head(const char* problem, const ComparisonSettings& settings, co
           {"cases", json::array()}};
 }
 
-Solid solid_of(const ComparisonSettings& settings, double alpha) {
+Solid solid_of(const ComparisonSettings& settings, double alpha, double largest_strain) {
   if (settings.log) {
     settings.log(fmt::format("alpha = {}: the network as a solid", alpha));
   }
-  Solid solid = calibrate_solid(settings.bulk, alpha, settings.folder);
+  Solid solid = calibrate_solid(settings.bulk, alpha, settings.folder, std::clamp(largest_strain, 0.03, 0.2));
   if (const auto known = settings.known ? settings.known(alpha) : std::nullopt) {
     solid.constants = *known;
   }

@@ -11,8 +11,8 @@ namespace boba::calibration {
 /// The head of a document, and the check of what both problems share.
 nlohmann::json comparison_head(const char* problem, const ComparisonSettings& settings, const char* best_model);
 
-/// Calibrates, or takes what is known.
-Solid solid_of(const ComparisonSettings& settings, double alpha);
+/// Calibrates (the uniaxial test to `largest_strain`), or takes what is known.
+Solid solid_of(const ComparisonSettings& settings, double alpha, double largest_strain);
 
 /// One row: a quantity of the particles and the same of each model.
 struct RowKey {

@@ -10,14 +10,18 @@
 
 namespace boba::calibration {
 
-Solid calibrate_solid(const GrainTemplate& box, double alpha, const std::filesystem::path& folder) {
+Solid calibrate_solid(const GrainTemplate& box, double alpha, const std::filesystem::path& folder,
+                      double largest_strain) {
   Solid solid{.alpha = alpha};
   solid.constants = isotropic_part(relaxed_stiffness(LinearNetwork(box), {alpha}).front().stiffness);
   solid.compression = folder / fmt::format("compression_{:g}.csv", alpha);
   std::ofstream file(solid.compression);
   file << "# compressive strain, compressive nominal stress (k/d), lateral strain\n";
-  for (const UniaxialPoint& point :
-       uniaxial_curve(box, alpha, {-0.001, -0.03, -0.06, -0.09, -0.12, -0.15, -0.175, -0.2})) {
+  std::vector<double> strains = {-0.001};
+  for (int n = 1; n <= 7; ++n) {
+    strains.push_back(-largest_strain * n / 7.0);
+  }
+  for (const UniaxialPoint& point : uniaxial_curve(box, alpha, strains)) {
     file << fmt::format("{:.8g},{:.8g},{:.8g}\n", 1.0 - point.axial_stretch, -point.stress, point.lateral_stretch - 1.0);
   }
   file.close();

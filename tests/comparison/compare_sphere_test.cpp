@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/comparison/comparison_case.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace boba::calibration {
+namespace {
+
+/// Spheres of 5137 nodes between walls against the finite-strain continuum with the layer of a flat cut face.
+class Spheres : public ::testing::TestWithParam<double> {};
+
+TEST_P(Spheres, FollowTheContinuum) {
+  const double alpha = GetParam();
+  ComparisonSettings settings = comparison_case(alpha, {0.05, 0.1}, "sphere");
+  settings.samples = 2;
+  const auto document = compare_sphere(settings);
+  std::filesystem::remove_all(settings.folder);
+  for (const double load : {0.05, 0.1}) {
+    const auto& force = row_of(document, "walls", load, "force");
+    const double reference = force["continuum"]["finite_layer"];
+    expect_near(fmt::format("alpha = {}, approach / R = {}: force", alpha, load), force["particles"], reference, 0.05 * reference);
+    const auto& bulge = row_of(document, "walls", load, "bulge_number");
+    const double number = bulge["continuum"]["linear_layer"];
+    expect_near(fmt::format("alpha = {}, approach / R = {}: u_eq E R / F", alpha, load), bulge["particles"], number,
+                std::max(0.01, 0.1 * std::abs(number) + bulge["particles_error"].get<double>()));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Alpha, Spheres, ::testing::Values(-0.8, 0.0, 2.0, 5.0, 12.0),
+                         [](const auto& info) { return fmt::format("{}", info.index); });
+
+} // namespace
+} // namespace boba::calibration

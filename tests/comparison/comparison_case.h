@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "calibration/compare/comparison.h"
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace boba::calibration {
+
+/// Settings of a comparison on a bulk of 2048 nodes, in a folder of its own below the build folder.
+ComparisonSettings comparison_case(double alpha, std::vector<double> loads, const std::string& name);
+
+/// The row of a quantity at a load.
+const nlohmann::json& row_of(const nlohmann::json& document, const std::string& setup, double load, const std::string& quantity);
+
+/// Prints measured, reference, difference and tolerance, and expects |measured - reference| <= tolerance (absolute).
+void expect_near(const std::string& what, double measured, double reference, double tolerance);
+
+} // namespace boba::calibration
