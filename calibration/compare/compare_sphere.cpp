@@ -5,6 +5,7 @@
 #include "calibration/specimen/bulk_cut.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
@@ -30,8 +31,10 @@ const char* word(Press press) {
 
 /// The surface that the continuum gets, by rule, and the plain one of node springs for comparison.
 struct Surface {
-  double radius = 0.0, c1 = 0.0, c3 = 0.0; ///< where plate and layer meet; the layer
-  SurfaceRule springs;
+  double body = 0.0;              ///< radius of the solid, by its bonds
+  double radius = 0.0;            ///< where plate and layer meet
+  double c1 = 0.0, c3 = 0.0;      ///< the layer between them
+  SurfaceRule springs;            ///< the simple picture: one spring a node of the outermost layer
   json report;
 };
 
@@ -57,38 +60,43 @@ std::vector<GrainTemplate> grains_of(const ComparisonSettings& settings) {
   return grains;
 }
 
-/// A cut grain's surface is that of a flat cut through the bulk, measured on slabs across the three axes of the box; a walled
-/// grain's is its layer of node springs.
+/// Slabs across the three axes of the bulk.
+std::vector<SlabState> slabs_of(const ComparisonSettings& settings, const Solid& solid) {
+  const double modulus = solid.constants.young() / (1.0 - std::pow(solid.constants.poisson(), 2));
+  std::vector<SlabState> states;
+  for (int axis = 0; axis < 3; ++axis) {
+    GrainTemplate box = settings.bulk;
+    for (Eigen::Vector3d& x : box.position) {
+      x = Eigen::Vector3d(x[axis], x[(axis + 1) % 3], x[(axis + 2) % 3]);
+    }
+    const auto more = press_slab(box, solid.alpha, slab_pressure * modulus);
+    states.insert(states.end(), more.begin(), more.end());
+  }
+  return states;
+}
+
+/// The solid ends where its bonds end. The layer on it is, for a cut grain, that of a flat cut through the bulk; for a walled
+/// grain its outermost nodes, a spring each.
 Surface surface_of(const ComparisonSettings& settings, const Solid& solid, const GrainTemplate& grain) {
-  const double density = bulk_density(settings.bulk).nodes;
-  Surface surface{.springs = surface_rule(grain, density)};
+  const BulkDensity density = bulk_density(settings.bulk);
+  Surface surface{.body = bond_radius(grain, density), .springs = surface_rule(grain, density.nodes)};
   surface.radius = surface.springs.radius;
   surface.c1 = surface.springs.c1;
   surface.c3 = surface.springs.c3;
   surface.report = {{"rule", "layer of node springs"}};
   if (settings.surface == TemplateSpec::Surface::cut) {
-    const double modulus = solid.constants.young() / (1.0 - std::pow(solid.constants.poisson(), 2));
-    std::vector<SlabState> states;
-    for (int axis = 0; axis < 3; ++axis) {
-      GrainTemplate box = settings.bulk;
-      for (Eigen::Vector3d& x : box.position) {
-        x = Eigen::Vector3d(x[axis], x[(axis + 1) % 3], x[(axis + 2) % 3]);
-      }
-      const auto more = press_slab(box, solid.alpha, slab_pressure * modulus);
-      states.insert(states.end(), more.begin(), more.end());
-    }
-    const FlatSurface flat = fit_surface(states, settings.bulk.period->z());
-    const double nominal = std::cbrt(3.0 * settings.n_nodes / (4.0 * M_PI * density));
-    surface.radius = nominal + flat.beyond;
+    const std::vector<SlabState> states = slabs_of(settings, solid);
+    const FlatSurface flat = fit_surface(states);
+    surface.radius = surface.body + flat.beyond;
     surface.c1 = flat.c1;
     surface.c3 = flat.c3;
-    surface.report = {{"rule", "flat cut face"}, {"beyond_cut", flat.beyond}, {"residual", flat.residual}};
+    surface.report = {{"rule", "flat cut face"}, {"beyond_body", flat.beyond}, {"residual", flat.residual}};
     for (const SlabState& state : states) {
-      surface.report["slab"].push_back({{"pressure", state.pressure},
-                                        {"overlap_from_cut", 0.5 * (settings.bulk.period->z() * state.bulk_stretch - state.gap)}});
+      surface.report["slab"].push_back({{"pressure", state.pressure}, {"beyond_body", state.beyond_body()}});
     }
   }
-  surface.report.update({{"radius", surface.radius},
+  surface.report.update({{"body_radius", surface.body},
+                         {"radius", surface.radius},
                          {"c1", surface.c1},
                          {"c3", surface.c3},
                          {"springs_radius", surface.springs.radius},
@@ -113,7 +121,9 @@ double contact_radius(const json& contact) {
 /// The models: what is changed from one to the next tells the reasons for a difference apart.
 json run_models(const ComparisonSettings& settings, const Solid& solid, const Surface& surface) {
   json results;
-  const auto run = [&](const char* name, double radius, double c1, double c3, const char* law) {
+  // `plate`: distance from the centre at which the plate meets the layer. A continuum's layer has no thickness, so its plate is
+  // moved in by what the layer stands out.
+  const auto run = [&](const char* name, double radius, double plate, double c1, double c3, const char* law) {
     ContinuumModel model{.name = fmt::format("{}_{:g}", name, solid.alpha),
                          .radius = radius,
                          .young = solid.constants.young(),
@@ -127,8 +137,8 @@ json run_models(const ComparisonSettings& settings, const Solid& solid, const Su
     }
     std::vector<double> approaches;
     std::size_t skipped = 0;
-    for (const double load : settings.loads) { // plates at the same places for every model; a smaller sphere meets them later
-      const double approach = 2.0 * (radius - surface.radius * (1.0 - load));
+    for (const double load : settings.loads) { // plates at the same places for every model; a smaller reach meets them later
+      const double approach = 2.0 * (plate - surface.radius * (1.0 - load));
       approach > 0.0 ? approaches.push_back(approach) : static_cast<void>(++skipped);
     }
     json loads = run_continuum("sphere", model, "approach", approaches, settings.folder);
@@ -140,12 +150,13 @@ json run_models(const ComparisonSettings& settings, const Solid& solid, const Su
       all.push_back(std::move(load));
     }
   };
-  run("linear", surface.radius, 0.0, 0.0, "");
-  run("linear_springs", surface.springs.radius, surface.springs.c1, surface.springs.c3, "");
-  run("linear_layer", surface.radius, surface.c1, surface.c3, "");
-  run("finite", surface.radius, 0.0, 0.0, "foam");
-  run("finite_layer", surface.radius, surface.c1, surface.c3, "foam");
-  run("neo_layer", surface.radius, surface.c1, surface.c3, "neo-hookean");
+  const double body = surface.body, layer = surface.radius;
+  run("linear", body, layer, 0.0, 0.0, "");
+  run("linear_springs", body, surface.springs.radius, surface.springs.c1, surface.springs.c3, "");
+  run("linear_layer", body, layer, surface.c1, surface.c3, "");
+  run("finite", body, layer, 0.0, 0.0, "foam");
+  run("finite_layer", body, layer, surface.c1, surface.c3, "foam");
+  run("neo_layer", body, layer, surface.c1, surface.c3, "neo-hookean");
   return results;
 }
 
@@ -221,7 +232,7 @@ void add_rows(json& document, const Solid& solid, const Surface& surface, Press 
   json profiles = json::array();
   for (std::size_t l = 0; l < fractions.size(); ++l) {
     const double approach = fractions[l] * surface.radius;
-    const double hertz = 4.0 / 3.0 * modulus * std::sqrt(surface.radius * approach) * approach;
+    const double hertz = 4.0 / 3.0 * modulus * std::sqrt(surface.body * approach) * approach;
     const auto row = [&](const char* quantity, const std::vector<double>& values, const json& continuum, const json& reference) {
       document["rows"].push_back(comparison_row({solid, word(press), fractions[l], quantity}, values, continuum, reference));
     };
@@ -235,14 +246,19 @@ void add_rows(json& document, const Solid& solid, const Surface& surface, Press 
     if (press == Press::walls) {
       row("contact_radius", samples([&](const auto& s) { return s[l].contact_radius; }),
           of_models(models, l, [](const json& load) { return contact_radius(load["contact"]); }),
-          std::sqrt(surface.radius * approach));
+          std::sqrt(surface.body * approach));
     }
     row("bulge", samples([&](const auto& s) { return s[l].bulge; }),
         of_models(models, l, [](const json& load) { return load["equatorial_bulge"]; }), nullptr);
-    row("bulge_number", samples([&](const auto& s) { return s[l].bulge * young * surface.radius / s[l].force; }),
+    const bool all_touch = std::all_of(states.begin(), states.end(), [&](const auto& s) { return s[l].force > 0.0; });
+    if (!all_touch) {
+      profiles.push_back({{"load", fractions[l]}});
+      continue;
+    }
+    row("bulge_number", samples([&](const auto& s) { return s[l].bulge * young * surface.body / s[l].force; }),
         of_models(models, l,
                   [&](const json& load) {
-                    return load["equatorial_bulge"].get<double>() * young * surface.radius / load["force"].get<double>();
+                    return load["equatorial_bulge"].get<double>() * young * surface.body / load["force"].get<double>();
                   }),
         nullptr);
     json profile = profile_report(states, l, models);
@@ -284,6 +300,7 @@ json compare_sphere(const ComparisonSettings& settings) {
     const Surface surface = surface_of(settings, solid, grains.front());
     SurfaceRule place = surface.springs;
     place.radius = surface.radius;
+    place.body = surface.body;
     std::vector<double> approaches;
     for (const double load : settings.loads) {
       approaches.push_back(load * surface.radius);

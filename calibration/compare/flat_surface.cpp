@@ -28,6 +28,14 @@ GrainTemplate slab_of(const GrainTemplate& box) {
   return slab;
 }
 
+double stiffness_of(const GrainTemplate& network) {
+  double sum = 0.0;
+  for (const Bond& bond : network.bonds) {
+    sum += bond.r0 * bond.r0;
+  }
+  return sum;
+}
+
 /// Stretch along z of the uncut box at the pressures of the states, by interpolation between its own states.
 void add_bulk_stretch(const GrainTemplate& box, double alpha, std::vector<SlabState>& states) {
   NonlinearNetwork network(box, alpha);
@@ -54,12 +62,13 @@ std::vector<SlabState> press_slab(const GrainTemplate& box, double alpha, double
   NonlinearNetwork network(slab, alpha);
   network.hold_steady({true, true, false, false, false, false});
   const double area = box.period->x() * box.period->y();
+  const double body = box.period->z() * stiffness_of(slab) / stiffness_of(box);
   std::vector<SlabState> states;
   for (double gap = box.period->z() + 1.0 - step;; gap -= step) {
     network.set_walls(-0.5 * gap, 0.5 * gap);
     network.relax(tolerance);
     const auto load = network.wall_loads();
-    states.push_back({0.5 * (load[0] + load[1]) / area, gap, 1.0});
+    states.push_back({0.5 * (load[0] + load[1]) / area, gap, 1.0, body});
     if (states.back().pressure >= largest_pressure) {
       break;
     }
@@ -71,7 +80,7 @@ std::vector<SlabState> press_slab(const GrainTemplate& box, double alpha, double
   return states;
 }
 
-FlatSurface fit_surface(const std::vector<SlabState>& states, double thickness) {
+FlatSurface fit_surface(const std::vector<SlabState>& states) {
   FlatSurface best{.residual = INFINITY};
   for (const SlabState& state : states) {
     best.largest_pressure = std::max(best.largest_pressure, state.pressure);
@@ -81,7 +90,7 @@ FlatSurface fit_surface(const std::vector<SlabState>& states, double thickness) 
     double aa = 0, ab = 0, bb = 0, ap = 0, bp = 0;
     std::vector<std::array<double, 2>> points;
     for (const SlabState& state : states) {
-      const double g = 0.5 * ((thickness + 2.0 * beyond) * state.bulk_stretch - state.gap), p = state.pressure;
+      const double g = beyond - state.beyond_body(), p = state.pressure;
       if (p < smallest_share * best.largest_pressure) {
         continue;
       }
@@ -106,7 +115,7 @@ FlatSurface fit_surface(const std::vector<SlabState>& states, double thickness) 
     fit.residual = std::sqrt(sum / static_cast<double>(points.size()));
     return fit;
   };
-  double centre = 0.1;
+  double centre = 0.6;
   for (const double width : {0.6, 0.06, 0.006}) {
     for (int n = -20; n <= 20; ++n) {
       const FlatSurface fit = attempt(centre + width * n / 20.0);

@@ -164,7 +164,7 @@ double equatorial_bulge(const std::vector<Vector3>& x, const std::vector<Vector3
 std::vector<SurfacePoint> surface_profile(const std::vector<Vector3>& x, const std::vector<Vector3>& u, double radius) {
   std::vector<SurfacePoint> profile(profile_bins);
   for (std::size_t n = 0; n < x.size(); ++n) {
-    if (x[n].norm() > radius - 1.5) {
+    if (x[n].norm() > radius - 1.0) {
       const double rho = x[n].head<2>().norm(), sine = std::abs(x[n].z()) / x[n].norm();
       // Bins of equal area, so equally many nodes.
       SurfacePoint& point = profile[std::min(profile_bins - 1, static_cast<int>(sine * profile_bins))];
@@ -194,8 +194,9 @@ SphereState Machine::state() const {
     x[n] = reference_[n] - mean;
     u[n] = network_.position()[n] - reference_[n] - mean_u;
   }
-  state.bulge = equatorial_bulge(x, u, rule_.radius);
-  state.profile = surface_profile(x, u, rule_.radius);
+  const double body = rule_.body > 0.0 ? rule_.body : rule_.radius;
+  state.bulge = equatorial_bulge(x, u, body);
+  state.profile = surface_profile(x, u, body);
   if (press_ == Press::walls) {
     const auto load = network_.wall_loads();
     state.imbalance = std::abs(load[1] - load[0]) / std::max(1e-12, state.force);

@@ -38,4 +38,12 @@ SurfaceRule surface_rule(const GrainTemplate& sphere, double density) {
   return rule;
 }
 
+double bond_radius(const GrainTemplate& sphere, const BulkDensity& bulk) {
+  double sum = 0.0;
+  for (const Bond& bond : sphere.bonds) {
+    sum += bond.r0 * bond.r0;
+  }
+  return std::cbrt(3.0 * sum / (4.0 * M_PI * bulk.bonds));
+}
+
 } // namespace boba::calibration

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/grain/grain_template.h"
+#include "calibration/specimen/bulk_cut.h"
 
 namespace boba::calibration {
 
@@ -16,9 +17,13 @@ struct SurfaceRule {
   double c1 = 0.0;             ///< 2 k n_s, k/d^2
   double c3 = 0.0;             ///< 8 k3 n_s, k/d^4
   int n_layer = 0;             ///< nodes in the layer
+  double body = 0.0;           ///< d: where displacements of the surface are told; 0 for `radius`
 };
 
 /// `density` of the bulk, nodes per d^3. \throws std::invalid_argument for a template with a period.
 SurfaceRule surface_rule(const GrainTemplate& sphere, double density);
+
+/// Radius (d) of the sphere of bulk that has the grain's bond stiffness, sum of r0^2: where the solid ends.
+double bond_radius(const GrainTemplate& sphere, const BulkDensity& bulk);
 
 } // namespace boba::calibration

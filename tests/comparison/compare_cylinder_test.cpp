@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/comparison/comparison_case.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
@@ -9,13 +10,16 @@
 namespace boba::calibration {
 namespace {
 
-/// Cylinders of about 5080 nodes (R = 7 d) at 1 % strain against the finite-strain continuum.
+/// A cylinder of the grain's radius (10 d, 15400 nodes) at 1 % strain against the finite-strain continuum. At R = 7 d the stiffness
+/// is 3 to 4 % above it with held ends: docs/comparison.md.
 class Cylinders : public ::testing::TestWithParam<double> {};
 
 TEST_P(Cylinders, FollowTheContinuumAtOnePercent) {
   const double alpha = GetParam();
   ComparisonSettings settings = comparison_case(alpha, {0.01}, "cylinder");
-  settings.samples = 3;
+  settings.radius = 10.0;
+  settings.height = 40.0;
+  settings.samples = 1;
   const auto document = compare_cylinder(settings);
   std::filesystem::remove_all(settings.folder);
   for (const std::string setup : {"sliding", "bonded"}) {
@@ -27,13 +31,20 @@ TEST_P(Cylinders, FollowTheContinuumAtOnePercent) {
                 poisson["continuum"]["finite"], 0.02);
   }
   for (const auto& one : document["cases"]) {
+    // Of nearly no lateral strain (nu = -0.01) five percent mean nothing: there 0.02 of the axial strain, as for nu.
+    const auto& profile = one["profiles"][0];
+    double largest = 0.0;
+    for (const double u : profile["continuum"]["finite"]["u_r"]) {
+      largest = std::max(largest, std::abs(u));
+    }
+    const double tolerance = std::max(0.05, 0.02 * 0.01 * one["radius"].get<double>() / largest);
     expect_near(fmt::format("alpha = {}, {}: misfit of the profile over its largest value", alpha, one["setup"].get<std::string>()),
-                one["profiles"][0]["misfit"]["finite"], 0.0, 0.05);
+                profile["misfit"]["finite"], 0.0, tolerance);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Alpha, Cylinders, ::testing::Values(-0.8, 0.0, 2.0, 5.0, 12.0),
-                         [](const auto& info) { return fmt::format("{}", info.index); });
+                         [](const auto& test) { return fmt::format("{}", test.index); });
 
 } // namespace
 } // namespace boba::calibration

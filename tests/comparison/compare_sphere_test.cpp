@@ -30,7 +30,7 @@ TEST_P(Spheres, FollowTheContinuum) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Alpha, Spheres, ::testing::Values(-0.8, 0.0, 2.0, 5.0, 12.0),
-                         [](const auto& info) { return fmt::format("{}", info.index); });
+                         [](const auto& test) { return fmt::format("{}", test.index); });
 
 } // namespace
 } // namespace boba::calibration
