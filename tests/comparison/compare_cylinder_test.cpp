@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/comparison/comparison_case.h"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
@@ -10,8 +9,8 @@
 namespace boba::calibration {
 namespace {
 
-/// A cylinder of the grain's radius (10 d, 15400 nodes) at 1 % strain against the finite-strain continuum. At R = 7 d the stiffness
-/// is 3 to 4 % above it with held ends: docs/comparison.md.
+/// A cylinder of the grain's radius (10 d, 15400 nodes) at 1 % strain against the finite-strain continuum. At R = 7 d the
+/// stiffness is 3 to 4 % above it with held ends: docs/comparison.md.
 class Cylinders : public ::testing::TestWithParam<double> {};
 
 TEST_P(Cylinders, FollowTheContinuumAtOnePercent) {
@@ -37,7 +36,8 @@ TEST_P(Cylinders, FollowTheContinuumAtOnePercent) {
     for (const double u : profile["continuum"]["finite"]["u_r"]) {
       largest = std::max(largest, std::abs(u));
     }
-    const double tolerance = std::max(0.05, 0.02 * 0.01 * one["radius"].get<double>() / largest);
+    const bool none = std::abs(one["poisson"].get<double>()) < 0.05;
+    const double tolerance = none ? 0.02 * 0.01 * one["radius"].get<double>() / largest : 0.05;
     expect_near(fmt::format("alpha = {}, {}: misfit of the profile over its largest value", alpha, one["setup"].get<std::string>()),
                 profile["misfit"]["finite"], 0.0, tolerance);
   }
