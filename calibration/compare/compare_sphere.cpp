@@ -16,7 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-// Strains under a contact are about 0.4 a/R at most where it matters, a/R = sqrt(approach / R).
 constexpr double slab_pressure = 0.1; // of E / (1 - nu^2): the mean pressure of a contact at approach / R = 0.1
 
 const char* word(Press press) {
@@ -142,6 +141,13 @@ json run_models(const ComparisonSettings& settings, const Solid& solid, const Su
       approach > 0.0 ? approaches.push_back(approach) : static_cast<void>(++skipped);
     }
     json loads = run_continuum("sphere", model, "approach", approaches, settings.folder);
+    if (model.law == "foam" && loads.size() < approaches.size()) { // two terms may run away beyond the strains they were fitted to
+      model.foam_terms = 1;
+      json simpler = run_continuum("sphere", model, "approach", approaches, settings.folder);
+      if (simpler.size() > loads.size()) {
+        loads = std::move(simpler);
+      }
+    }
     json& all = results[name] = json::array();
     for (std::size_t l = 0; l < skipped; ++l) {
       all.push_back(nullptr);
@@ -296,7 +302,7 @@ json compare_sphere(const ComparisonSettings& settings) {
   json document = comparison_head("sphere", settings, "finite_layer");
   const std::vector<GrainTemplate> grains = grains_of(settings);
   for (const double alpha : settings.alphas) {
-    const Solid solid = solid_of(settings, alpha, 0.4 * std::sqrt(settings.loads.back()));
+    const Solid solid = solid_of(settings, alpha, 0.2);
     const Surface surface = surface_of(settings, solid, grains.front());
     SurfaceRule place = surface.springs;
     place.radius = surface.radius;

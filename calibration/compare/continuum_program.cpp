@@ -70,7 +70,7 @@ std::vector<std::string> command_line(const std::string& problem, const Continuu
     words.insert(words.end(), {"--kinematics=finite", "--law=" + model.law});
   }
   if (model.law == "foam") {
-    words.insert(words.end(), {"--fit=" + model.compression.string(), "--fit-terms=2"});
+    words.insert(words.end(), {"--fit=" + model.compression.string(), fmt::format("--fit-terms={}", model.foam_terms)});
   }
   words.insert(words.end(), model.more.begin(), model.more.end());
   return words;

@@ -15,6 +15,7 @@ struct ContinuumModel {
   double c1 = 0.0, c3 = 0.0;       ///< layer of a compliant interface; c1 = 0: rigid
   std::string law;                 ///< "" for small strain, "foam" (fitted to `compression`) or "neo-hookean"
   std::filesystem::path compression; ///< uniaxial test of the network
+  int foam_terms = 2;              ///< of the fit to it
   std::vector<std::string> more;   ///< of one problem: --height, --ends
 };
 

@@ -16,7 +16,7 @@ double force_error(int n_nodes, int samples) {
   const auto document = compare_sphere(settings);
   std::filesystem::remove_all(settings.folder);
   const auto& force = row_of(document, "walls", 0.1, "force");
-  return force["particles"].get<double>() / force["continuum"]["finite_layer"].get<double>() - 1.0;
+  return force.at("particles").get<double>() / force.at("continuum").at("finite_layer").get<double>() - 1.0;
 }
 
 TEST(Resolution, MoreNodesBringTheForceCloserToTheContinuum) {

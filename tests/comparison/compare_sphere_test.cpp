@@ -21,12 +21,12 @@ TEST_P(Spheres, FollowTheContinuum) {
   std::filesystem::remove_all(settings.folder);
   for (const double load : {0.05, 0.1}) {
     const auto& force = row_of(document, "walls", load, "force");
-    const double reference = force["continuum"]["finite_layer"];
+    const double reference = force.at("continuum").at("finite_layer");
     expect_near(fmt::format("alpha = {}, approach / R = {}: force", alpha, load), force["particles"], reference, 0.12 * reference);
     const auto& bulge = row_of(document, "walls", load, "bulge_number");
-    const double number = bulge["continuum"]["linear_layer"];
+    const double number = bulge.at("continuum").at("linear_layer");
     expect_near(fmt::format("alpha = {}, approach / R = {}: u_eq E R / F", alpha, load), bulge["particles"], number,
-                alpha > 10.0 ? 0.02 : std::max(0.01, 0.1 * std::abs(number) + bulge["particles_error"].get<double>()));
+                alpha > 10.0 ? 0.02 : std::max(0.01, 0.1 * std::abs(number) + bulge.at("particles_error").get<double>()));
   }
 }
 
