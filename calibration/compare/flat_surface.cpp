@@ -17,6 +17,7 @@ constexpr double step = 0.15;         // d, of the gap between two relaxed state
 constexpr double bulk_step = 0.01;    // of the uncut box's stretch
 constexpr double smallest_share = 0.02; // of the largest pressure; below, single nodes carry the load
 constexpr double tolerance = 1e-8;
+constexpr double softest_start = 0.2; // c1 over p/g at the largest overlap: a layer without a slope at rest has no tangent
 
 /// The box without the bonds that cross its faces across z, far from its images there.
 GrainTemplate slab_of(const GrainTemplate& box) {
@@ -88,6 +89,7 @@ FlatSurface fit_surface(const std::vector<SlabState>& states) {
   // For each place of the surface p(g) is linear in c1 and c3; the place by a scan, finer about the best.
   const auto attempt = [&](double beyond) {
     double aa = 0, ab = 0, bb = 0, ap = 0, bp = 0;
+    double largest_squared = 0.0;
     std::vector<std::array<double, 2>> points;
     for (const SlabState& state : states) {
       const double g = beyond - state.beyond_body(), p = state.pressure;
@@ -95,6 +97,7 @@ FlatSurface fit_surface(const std::vector<SlabState>& states) {
         continue;
       }
       points.push_back({g, p});
+      largest_squared = std::max(largest_squared, g * g);
       aa += g * g, ab += std::pow(g, 4), bb += std::pow(g, 6), ap += g * p, bp += g * g * g * p;
     }
     const double determinant = aa * bb - ab * ab;
@@ -104,7 +107,7 @@ FlatSurface fit_surface(const std::vector<SlabState>& states) {
     if (fit.c3 < 0.0) {
       fit.c3 = 0.0;
       fit.c1 = ap / aa;
-    } else if (fit.c1 < 0.0) {
+    } else if (fit.c1 < softest_start * (fit.c1 + fit.c3 * largest_squared)) {
       return fit;
     }
     double sum = 0.0;

@@ -63,8 +63,7 @@ public:
       network_.set_positions(position);
       reference_ = position;
     }
-    // Two grains turn and slide against each other as well; they are tied by their own contact from the start.
-    network_.hold_steady({true, true, press_ == Press::images, true, true, true});
+    network_.hold_steady({true, true, press_ == Press::images, true, true, true}, network_.n_nodes() / n_);
   }
 
   /// Moves the planes to a gap (distance of the two planes of one grain, d) and relaxes.

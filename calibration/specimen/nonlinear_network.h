@@ -40,8 +40,11 @@ public:
   /// Forces on the lower and on the upper wall, away from the body (k d).
   std::array<double, 2> wall_loads() const;
   /// Holds back rigid motions without a force at any single node: their part of the forces is taken out. What is held:
-  /// x, y, z, then the turns about them.
-  void hold_steady(const std::array<bool, 6>& motions) { steady_ = motions; }
+  /// x, y, z, then the turns about them; of each of `n_bodies` equal runs of nodes.
+  void hold_steady(const std::array<bool, 6>& motions, int n_bodies = 1) {
+    steady_ = motions;
+    n_bodies_ = n_bodies;
+  }
 
   /// Forces of the bonds on every node at the given positions (k d).
   std::vector<Vector3> forces(const std::vector<Vector3>& position) const;
@@ -97,6 +100,7 @@ private:
   std::vector<Held> held_;
   std::optional<std::array<double, 2>> walls_;
   std::array<bool, 6> steady_{};
+  int n_bodies_ = 1;
   int n_creeps_ = 0;
   std::vector<State> linearised_; // where the Jacobian was taken
   std::vector<double> wall_spring_;

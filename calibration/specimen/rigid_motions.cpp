@@ -26,27 +26,30 @@ void subtract(std::vector<Vector3d>& from, double factor, const std::vector<Vect
 
 } // namespace
 
-RigidMotions::RigidMotions(const std::vector<Vector3d>& position, const std::array<bool, 6>& chosen) {
-  Vector3d mean = Vector3d::Zero();
-  for (const Vector3d& x : position) {
-    mean += x / static_cast<double>(position.size());
-  }
-  for (int m = 0; m < 6; ++m) {
-    if (!chosen[m]) {
-      continue;
+RigidMotions::RigidMotions(const std::vector<Vector3d>& position, const std::array<bool, 6>& chosen, int n_bodies) {
+  const std::size_t size = position.size() / n_bodies;
+  for (std::size_t first = 0; first < size * n_bodies; first += size) {
+    Vector3d mean = Vector3d::Zero();
+    for (std::size_t n = first; n < first + size; ++n) {
+      mean += position[n] / static_cast<double>(size);
     }
-    std::vector<Vector3d> motion(position.size());
-    for (std::size_t n = 0; n < position.size(); ++n) {
-      motion[n] = m < 3 ? Vector3d(Vector3d::Unit(m)) : Vector3d(Vector3d::Unit(m - 3).cross(position[n] - mean));
+    for (int m = 0; m < 6; ++m) {
+      if (!chosen[m]) {
+        continue;
+      }
+      std::vector<Vector3d> motion(position.size(), Vector3d::Zero());
+      for (std::size_t n = first; n < first + size; ++n) {
+        motion[n] = m < 3 ? Vector3d(Vector3d::Unit(m)) : Vector3d(Vector3d::Unit(m - 3).cross(position[n] - mean));
+      }
+      for (const auto& earlier : motion_) { // modified Gram-Schmidt
+        subtract(motion, dot(motion, earlier), earlier);
+      }
+      const double length = std::sqrt(dot(motion, motion));
+      for (Vector3d& v : motion) {
+        v /= length;
+      }
+      motion_.push_back(std::move(motion));
     }
-    for (const auto& earlier : motion_) { // modified Gram-Schmidt
-      subtract(motion, dot(motion, earlier), earlier);
-    }
-    const double length = std::sqrt(dot(motion, motion));
-    for (Vector3d& v : motion) {
-      v /= length;
-    }
-    motion_.push_back(std::move(motion));
   }
 }
 

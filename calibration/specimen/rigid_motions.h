@@ -11,8 +11,8 @@ namespace boba::calibration {
 class RigidMotions {
 public:
   RigidMotions() = default;
-  /// `chosen`: which of x, y, z and the turns about x, y, z.
-  RigidMotions(const std::vector<Eigen::Vector3d>& position, const std::array<bool, 6>& chosen);
+  /// `chosen`: which of x, y, z and the turns about x, y, z; of each of `n_bodies` equal runs of nodes by itself.
+  RigidMotions(const std::vector<Eigen::Vector3d>& position, const std::array<bool, 6>& chosen, int n_bodies = 1);
 
   /// Removes the chosen motions from a field of one vector a node (orthogonal projection).
   void take_out(std::vector<Eigen::Vector3d>& field) const;

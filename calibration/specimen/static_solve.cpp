@@ -155,7 +155,7 @@ void require_convergence(SNES newton) {
 
 void NonlinearNetwork::creep(int steps) {
   constexpr double dt = 0.1, drag = 0.05; // tau; 1/tau, critical for waves of the length of a grain
-  const RigidMotions rigid(position_, steady_);
+  const RigidMotions rigid(position_, steady_, n_bodies_);
   std::vector<Vector3> velocity(position_.size(), Vector3::Zero());
   for (int s = 0; s < steps; ++s) {
     if (s % steps_a_list == 0) {
@@ -206,7 +206,7 @@ void NonlinearNetwork::newton(double tolerance) {
     ++blocks_in_row[link.j];
   }
   const Matrix pair = empty_pair_matrix(n_nodes(), blocks_in_row);
-  SnesGlue glue{*this, pair, RigidMotions(position_, steady_)};
+  SnesGlue glue{*this, pair, RigidMotions(position_, steady_, n_bodies_)};
   const int n = 3 * n_nodes();
   Matrix shell;
   check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &glue, shell.address()), "MatCreateShell");
