@@ -5,6 +5,7 @@
 #include "continuum/app/report.h"
 #include "continuum/app/summary.h"
 #include "continuum/app/uniaxial_file.h"
+#include "continuum/octant/mpi_session.h"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -32,7 +33,7 @@ struct Options {
   std::string kinematics = "linear", law = "neo-hookean", curve;
   double exponent = 2;
   int foam_terms = 1;
-  std::string ends = "bonded", against = "plates", interface = "rigid", formulation = "automatic", output;
+  std::string ends = "bonded", against = "plates", interface = "rigid", formulation = "automatic", multigrid = "gamg", output;
   bool force = false, no_fields = false;
 };
 
@@ -86,6 +87,8 @@ private:
         ->check(CLI::IsMember({2, 3}));
     app.add_option("--refinements", options_.refinements, "dimension 3: even refinements of the coarse octant")
         ->check(CLI::Range(0, 8));
+    app.add_option("--multigrid", options_.multigrid, "dimension 3: gamg (PETSc) or boomer (hypre BoomerAMG)")
+        ->check(CLI::IsMember({"gamg", "boomer"}));
     app.add_option("--degree", options_.degree, "degree of the displacement, 1 to 4");
     app.add_option("--formulation", options_.formulation, "automatic, displacement or projected")
         ->check(CLI::IsMember({"automatic", "displacement", "projected"}));
@@ -148,8 +151,10 @@ private:
     }
     json chosen = parameters(problem.finite_law);
     chosen["refinements"] = options_.refinements;
+    chosen["multigrid"] = options_.multigrid;
     chosen["ranks"] = session.size();
-    const OctantChoice choice{options_.degree, options_.refinements, elements_across,
+    const OctantChoice choice{options_.refinements, elements_across,
+                              options_.multigrid == "gamg" ? Multigrid::gamg : Multigrid::boomer,
                               options_.no_fields ? "" : options_.output};
     const json document = run_octant(problem, choice, chosen);
     if (session.rank() == 0) {

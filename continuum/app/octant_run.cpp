@@ -12,15 +12,18 @@ namespace {
 
 using nlohmann::json;
 
+/// Iterations grow like the square root of the volume modulus over mu: this is as far as they stay below 1000.
+constexpr double largest_poisson = 0.499;
+
 template <class Problem> void check_octant(const Problem& problem) {
   check(problem);
   if (problem.finite_law || !problem.interface.rigid()) {
     throw std::invalid_argument("dimension = 3 is not allowed with finite kinematics or a compliant interface: use 2");
   }
-  if (problem.material.poisson > 0.45) {
-    throw std::invalid_argument(fmt::format("poisson = {} is not allowed with dimension = 3: it must lie in (-1, 0.45], "
-                                            "beyond which the displacement form locks; use 2",
-                                            problem.material.poisson));
+  if (problem.material.poisson > largest_poisson) {
+    throw std::invalid_argument(fmt::format("poisson = {} is not allowed with dimension = 3: it must lie in (-1, {}], "
+                                            "beyond which the iterations grow too many; use dimension = 2",
+                                            problem.material.poisson, largest_poisson));
   }
 }
 
@@ -29,10 +32,14 @@ json common(const OctantSolution& solution) {
           {"n_unknowns", solution.n_unknowns},
           {"cg_iterations", solution.iterations},
           {"active_set_iterations", solution.active_set_iterations},
-          {"assemble_seconds", solution.assemble_seconds},
-          {"precondition_seconds", solution.precondition_seconds},
-          {"solve_seconds", solution.solve_seconds},
-          {"seconds", solution.assemble_seconds + solution.precondition_seconds + solution.solve_seconds}};
+          {"profile", profile_of(solution.profile)},
+          {"assemble_seconds", solution.assemble.wall},
+          {"precondition_seconds", solution.precondition.wall},
+          {"solve_seconds", solution.solve.wall},
+          {"assemble_cpu_seconds", solution.assemble.cpu},
+          {"precondition_cpu_seconds", solution.precondition.cpu},
+          {"solve_cpu_seconds", solution.solve.cpu},
+          {"seconds", solution.assemble.wall + solution.precondition.wall + solution.solve.wall}};
 }
 
 } // namespace
@@ -40,32 +47,28 @@ json common(const OctantSolution& solution) {
 json run_octant(const SphereProblem& problem, const OctantChoice& choice, json parameters) {
   check_octant(problem);
   json document = summary_header("sphere", std::move(parameters));
+  unsigned number = 0;
   for (const double approach : problem.approaches) {
     const Hertz guess = hertz(problem.radius, problem.material, approach / 2);
-    SphereMeshSize size;
-    size.lowest_edge = 0.9 * guess.contact_radius;
-    size.highest_edge = std::min(1.1 * guess.contact_radius, 0.9 * problem.radius);
-    size.elements_across = choice.elements_across;
-    size.elements_inside = 0.6 * choice.elements_across;
-    size.growth = 0.5;
-    OctantShape shape;
-    shape.radius = problem.radius;
+    OctantShape shape =
+        graded_sphere(problem.radius, 0.9 * guess.contact_radius,
+                      std::min(1.1 * guess.contact_radius, 0.9 * problem.radius), choice.elements_across);
     shape.refinements = choice.refinements;
-    shape.wanted = [&](double x, double y, double z) {
-      return wanted_size(std::hypot(x, y), z, 0, problem.radius, size);
-    };
-    OctantBody body(shape, choice.degree);
+    OctantBody body(shape, problem.discretisation, choice.multigrid);
     const OctantSolution solution =
         body.press(problem.material, problem.radius - approach / 2, guess.contact_radius);
     json load = common(solution);
     load["approach"] = approach;
     load["contact_radius"] = solution.contact_radius;
     load["peak_pressure"] = load["central_pressure"] = solution.central_pressure;
-    load["equatorial_bulge"] = solution.midheight_radial;
+    load["equatorial_bulge"] = solution.profile.front().u_r;
     load["hertz_force"] = guess.force;
+    load["hertz_contact_radius"] = guess.contact_radius;
+    load["hertz_peak_pressure"] = guess.peak_pressure;
+    load["contact"] = {{"r", array_of(solution.r)}, {"pressure", array_of(solution.pressure)}};
     document["loads"].push_back(load);
     if (!choice.fields.empty()) {
-      body.write(choice.fields);
+      body.write(choice.fields, number++);
     }
   }
   return document;
@@ -78,7 +81,7 @@ json run_octant(const CylinderProblem& problem, const OctantChoice& choice, json
   shape.radius = problem.radius;
   shape.height = problem.height;
   shape.refinements = choice.refinements;
-  OctantBody body(shape, choice.degree);
+  OctantBody body(shape, problem.discretisation, choice.multigrid);
   // Small strain: one solution, scaled.
   const OctantSolution unit = body.solve_held(problem.material, problem.height, problem.ends == Ends::bonded);
   for (const double strain : problem.strains) {
@@ -86,11 +89,12 @@ json run_octant(const CylinderProblem& problem, const OctantChoice& choice, json
     load["strain"] = strain;
     load["force"] = strain * unit.force;
     load["apparent_modulus"] = unit.force / (std::numbers::pi * problem.radius * problem.radius);
-    load["midheight_poisson"] = unit.midheight_radial / problem.radius;
+    load["midheight_poisson"] = unit.profile.front().u_r / problem.radius;
+    load["midheight_poisson_local"] = -unit.profile.front().u_r / problem.radius / local_axial_strain(unit.profile);
     document["loads"].push_back(load);
   }
   if (!choice.fields.empty()) {
-    body.write(choice.fields);
+    body.write(choice.fields, 0);
   }
   return document;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "continuum/cylinder/cylinder.h"
-#include "continuum/elasticity/octant_body.h"
+#include "continuum/octant/octant_body.h"
 #include "continuum/sphere/sphere.h"
 
 #include <nlohmann/json.hpp>
@@ -10,12 +10,12 @@
 
 namespace boba::continuum {
 
-/// What the command line chose for three dimensions.
+/// What the command line chose for three dimensions alone.
 struct OctantChoice {
-  unsigned degree = 2;
   /// Even refinements of the coarse octant.
   unsigned refinements = 2;
   double elements_across = 10;
+  Multigrid multigrid = Multigrid::gamg;
   /// Folder for the fields of the last load; empty: none.
   std::string fields;
 };

@@ -12,19 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-json profile_of(const std::vector<FieldPoint>& points) {
-  json r = json::array(), z = json::array(), u_r = json::array(), u_z = json::array();
-  for (const auto& point : points) {
-    r.push_back(point.r);
-    z.push_back(point.z);
-    u_r.push_back(point.u_r);
-    u_z.push_back(point.u_z);
-  }
-  return {{"r", r}, {"z", z}, {"u_r", u_r}, {"u_z", u_z}};
-}
-
-json array_of(const Eigen::VectorXd& values) { return std::vector<double>(values.data(), values.data() + values.size()); }
-
 std::vector<StressPoint> stress_of(const MeridianBody& body, const Material& material,
                                    const std::shared_ptr<const GradientLaw>& law, const Eigen::VectorXd& u) {
   return law ? body.stress(*law, u) : body.stress(material, u);
@@ -39,6 +26,19 @@ void write_load(const std::filesystem::path& folder, std::size_t i, double value
 }
 
 } // namespace
+
+json profile_of(const std::vector<FieldPoint>& points) {
+  json r = json::array(), z = json::array(), u_r = json::array(), u_z = json::array();
+  for (const auto& point : points) {
+    r.push_back(point.r);
+    z.push_back(point.z);
+    u_r.push_back(point.u_r);
+    u_z.push_back(point.u_z);
+  }
+  return {{"r", r}, {"z", z}, {"u_r", u_r}, {"u_z", u_z}};
+}
+
+json array_of(const Eigen::VectorXd& values) { return std::vector<double>(values.data(), values.data() + values.size()); }
 
 json summary_header(const char* problem, json parameters) {
   return {{"schema", "boba-continuum-summary"},

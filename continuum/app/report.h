@@ -12,6 +12,10 @@ namespace boba::continuum {
 /// The head of a summary: schema, version, problem and parameters, without loads.
 nlohmann::json summary_header(const char* problem, nlohmann::json parameters);
 
+/// Arrays of the summary.
+nlohmann::json profile_of(const std::vector<FieldPoint>& points);
+nlohmann::json array_of(const Eigen::VectorXd& values);
+
 /// The summary of a run; parameters: what the command line chose.
 nlohmann::json report(const std::vector<SphereLoad>& loads, const SphereProblem& problem, nlohmann::json parameters);
 nlohmann::json report(const CylinderResult& result, const CylinderProblem& problem, nlohmann::json parameters);

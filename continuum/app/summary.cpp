@@ -98,7 +98,9 @@ std::string unit_of(const std::string& field) {
       {"z", "length"},                {"u_r", "length"},                 {"u_z", "length"},
       {"overlap", "length"},          {"force", "stress*length^2"},      {"hertz_force", "stress*length^2"},
       {"peak_pressure", "stress"},    {"central_pressure", "stress"},    {"hertz_peak_pressure", "stress"},
-      {"pressure", "stress"},         {"apparent_modulus", "stress"},    {"seconds", "s"}};
+      {"pressure", "stress"},         {"apparent_modulus", "stress"},    {"seconds", "s"},
+      {"assemble_seconds", "s"},       {"precondition_seconds", "s"},      {"solve_seconds", "s"},
+      {"assemble_cpu_seconds", "s"},   {"precondition_cpu_seconds", "s"},  {"solve_cpu_seconds", "s"}};
   const auto found = units.find(field);
   return found == units.end() ? "1" : found->second;
 }

@@ -1,22 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "continuum/contact/plate_press.h"
+#include "continuum/contact/pressure_profile.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 
 namespace boba::continuum {
 namespace {
-
-/// Coefficients of the polynomial in x of the given degree that fits y best.
-Eigen::VectorXd polynomial_fit(const std::vector<double>& x, const std::vector<double>& y, int degree) {
-  Eigen::MatrixXd powers(Eigen::Index(x.size()), degree + 1);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    for (int k = 0; k <= degree; ++k) {
-      powers(Eigen::Index(i), k) = std::pow(x[i], k);
-    }
-  }
-  return powers.colPivHouseholderQr().solve(Eigen::Map<const Eigen::VectorXd>(y.data(), Eigen::Index(y.size())));
-}
 
 double sign_change(const Eigen::VectorXd& r, const Eigen::VectorXd& overlap, Eigen::Index last) {
   if (last + 1 >= r.size()) {
@@ -24,6 +13,15 @@ double sign_change(const Eigen::VectorXd& r, const Eigen::VectorXd& overlap, Eig
   }
   const double t = overlap[last] / (overlap[last] - overlap[last + 1]);
   return r[last] + t * (r[last + 1] - r[last]);
+}
+
+/// The vertices from the axis to the given one.
+std::vector<ProfilePoint> pressed_points(const Eigen::VectorXd& r, const PressState& state, Eigen::Index last) {
+  std::vector<ProfilePoint> points;
+  for (Eigen::Index i = 0; i <= last; ++i) {
+    points.push_back({r[i], state.pressure[i]});
+  }
+  return points;
 }
 
 } // namespace
@@ -63,35 +61,12 @@ double contact_edge(const Eigen::VectorXd& r, const PressState& state, const Int
   if (!interface.rigid()) {
     return sign_change(r, state.overlap, last);
   }
-  // The vertex next to the edge carries the error of the broken element and is left out.
-  std::vector<double> squares, pressures;
-  for (Eigen::Index i = 0; i + 1 < last; ++i) {
-    if (r[i] > 0.6 * r[last]) {
-      squares.push_back(r[i] * r[i]);
-      pressures.push_back(state.pressure[i] * state.pressure[i]);
-    }
-  }
-  if (squares.size() < 5) {
-    return r[last];
-  }
-  const Eigen::VectorXd fit = polynomial_fit(squares, pressures, 2);
-  double square = r[last] * r[last];
-  for (int step = 0; step < 20; ++step) {
-    square -= (fit[0] + square * (fit[1] + square * fit[2])) / (fit[1] + 2 * square * fit[2]);
-  }
-  // The edge lies beside the last pressed vertex; a fit that says otherwise is not one.
-  const double edge = std::sqrt(std::max(0., square));
-  const double spacing = r[last] - r[last - 1];
-  return std::abs(edge - r[last]) < 3 * spacing ? edge : r[last];
+  // The two outermost pressed vertices carry the error of the broken element.
+  return extrapolated_edge(pressed_points(r, state, last), 1.5 * (r[last] - r[std::max<Eigen::Index>(last - 1, 0)]));
 }
 
 double central_pressure(const Eigen::VectorXd& r, const PressState& state, double edge) {
-  std::vector<double> squares, pressures;
-  for (Eigen::Index i = 0; i < r.size() && (r[i] < 0.5 * edge || squares.size() < 3); ++i) {
-    squares.push_back(r[i] * r[i]);
-    pressures.push_back(state.pressure[i]);
-  }
-  return polynomial_fit(squares, pressures, squares.size() > 5 ? 2 : 1)[0];
+  return pressure_on_axis(pressed_points(r, state, r.size() - 1), edge);
 }
 
 } // namespace boba::continuum

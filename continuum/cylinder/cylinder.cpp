@@ -15,17 +15,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Axial strain of the side at mid-height, from the slope of u_z between the lowest vertices (u_z is odd in z).
-double local_axial_strain(const std::vector<FieldPoint>& side) {
-  const FieldPoint& a = side.at(1);
-  if (side.size() < 4) {
-    return a.u_z / a.z;
-  }
-  const FieldPoint& b = side.at(2);
-  const double sa = a.u_z / a.z, sb = b.u_z / b.z;
-  return (sa * b.z * b.z - sb * a.z * a.z) / (b.z * b.z - a.z * a.z);
-}
-
 void describe(CylinderLoad& load, const CylinderProblem& problem, const MeridianBody& body) {
   const double area = std::numbers::pi * problem.radius * problem.radius;
   load.profile = body.boundary_points(lateral, load.displacement);
@@ -121,6 +110,17 @@ void solve_finite(const CylinderProblem& problem, CylinderResult& result) {
 }
 
 } // namespace
+
+double local_axial_strain(const std::vector<FieldPoint>& side) {
+  // u_z is odd in z: the slope at 0 from two values, to fourth order.
+  const FieldPoint& a = side.at(1);
+  if (side.size() < 4) {
+    return a.u_z / a.z;
+  }
+  const FieldPoint& b = side.at(2);
+  const double sa = a.u_z / a.z, sb = b.u_z / b.z;
+  return (sa * b.z * b.z - sb * a.z * a.z) / (b.z * b.z - a.z * a.z);
+}
 
 void check(const CylinderProblem& problem) {
   check_positive("radius", problem.radius);

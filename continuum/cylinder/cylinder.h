@@ -57,6 +57,9 @@ struct CylinderResult {
   double setup_seconds = 0;
 };
 
+/// Axial strain of the side at mid-height, from the slope of u_z between the lowest vertices of its profile.
+double local_axial_strain(const std::vector<FieldPoint>& side);
+
 /// Throws std::invalid_argument (name, value, range) for a problem that cannot be posed.
 void check(const CylinderProblem& problem);
 
