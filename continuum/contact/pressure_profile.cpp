@@ -7,16 +7,32 @@
 namespace boba::continuum {
 namespace {
 
-/// Coefficients of the polynomial in x of the given degree that fits y best.
-Eigen::VectorXd polynomial_fit(const std::vector<double>& x, const std::vector<double>& y, int degree) {
-  Eigen::MatrixXd powers(Eigen::Index(x.size()), degree + 1);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    for (int k = 0; k <= degree; ++k) {
-      powers(Eigen::Index(i), k) = std::pow(x[i], k);
-    }
+/// Weighted points of a fit.
+struct Samples {
+  std::vector<double> x, y, weight;
+
+  void add(double at, double value, double w) {
+    x.push_back(at);
+    y.push_back(value);
+    weight.push_back(w);
   }
-  return powers.colPivHouseholderQr().solve(Eigen::Map<const Eigen::VectorXd>(y.data(), Eigen::Index(y.size())));
-}
+  std::size_t size() const { return x.size(); }
+
+  /// Coefficients of the polynomial in x of the given degree that fits y best.
+  Eigen::VectorXd polynomial(int degree) const {
+    const auto n = Eigen::Index(size());
+    Eigen::MatrixXd powers(n, degree + 1);
+    Eigen::VectorXd rhs(n);
+    for (std::size_t i = 0; i < size(); ++i) {
+      const double root = std::sqrt(weight[i]);
+      rhs[Eigen::Index(i)] = root * y[i];
+      for (int k = 0; k <= degree; ++k) {
+        powers(Eigen::Index(i), k) = root * std::pow(x[i], k);
+      }
+    }
+    return powers.colPivHouseholderQr().solve(rhs);
+  }
+};
 
 } // namespace
 
@@ -25,17 +41,16 @@ double extrapolated_edge(const std::vector<ProfilePoint>& points, double margin)
     return 0;
   }
   const double last = points.back().r;
-  std::vector<double> squares, pressures;
-  for (const auto& [r, pressure] : points) {
+  Samples samples;
+  for (const auto& [r, pressure, weight] : points) {
     if (r > 0.6 * last && r < last - margin) {
-      squares.push_back(r * r);
-      pressures.push_back(pressure * pressure);
+      samples.add(r * r, pressure * pressure, weight);
     }
   }
-  if (squares.size() < 5) {
+  if (samples.size() < 5) {
     return last;
   }
-  const Eigen::VectorXd fit = polynomial_fit(squares, pressures, 2);
+  const Eigen::VectorXd fit = samples.polynomial(2);
   double square = last * last;
   for (int step = 0; step < 20; ++step) {
     square -= (fit[0] + square * (fit[1] + square * fit[2])) / (fit[1] + 2 * square * fit[2]);
@@ -46,15 +61,14 @@ double extrapolated_edge(const std::vector<ProfilePoint>& points, double margin)
 }
 
 double pressure_on_axis(const std::vector<ProfilePoint>& points, double edge) {
-  std::vector<double> squares, pressures;
-  for (const auto& [r, pressure] : points) {
-    if (r >= 0.5 * edge && squares.size() >= 3) {
+  Samples samples;
+  for (const auto& [r, pressure, weight] : points) {
+    if (r >= 0.5 * edge && samples.size() >= 3) {
       break;
     }
-    squares.push_back(r * r);
-    pressures.push_back(pressure);
+    samples.add(r * r, pressure, weight);
   }
-  return squares.empty() ? 0 : polynomial_fit(squares, pressures, squares.size() > 5 ? 2 : 1)[0];
+  return samples.size() == 0 ? 0 : samples.polynomial(samples.size() > 5 ? 2 : 1)[0];
 }
 
 } // namespace boba::continuum

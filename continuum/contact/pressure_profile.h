@@ -5,9 +5,9 @@
 
 namespace boba::continuum {
 
-/// A pressed node of a contact: distance from the axis and pressure.
+/// A pressed node of a contact: distance from the axis, pressure, and the weight of its square in a fit.
 struct ProfilePoint {
-  double r, pressure;
+  double r, pressure, weight = 1;
 };
 
 /// Radius at which the contact ends, from pressed points sorted by r: the square of the pressure, which goes to zero

@@ -57,13 +57,13 @@ std::vector<ProfilePoint> pressures_of(const OctantSystem& system, const std::ve
   std::vector<double> here;
   for (const Node& node : nodes) {
     if (node.active) {
-      here.insert(here.end(), {node.r, -forces[node.row] / node.area});
+      here.insert(here.end(), {node.r, -forces[node.row] / node.area, node.area});
     }
   }
   std::vector<ProfilePoint> points;
   for (const auto& part : dealii::Utilities::MPI::all_gather(system.communicator, here)) {
-    for (std::size_t k = 0; k < part.size(); k += 2) {
-      points.push_back({part[k], part[k + 1]});
+    for (std::size_t k = 0; k < part.size(); k += 3) {
+      points.push_back({part[k], part[k + 1], part[k + 2]});
     }
   }
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.r < b.r; });
@@ -100,7 +100,7 @@ OctantSolution OctantBody::press(const Material& material, double plate, double 
       }
       solution.force = 4 * dealii::Utilities::MPI::sum(quarter, system.communicator);
       const auto points = pressures_of(system, solved, forces);
-      solution.contact_radius = extrapolated_edge(points, 2 * system.finest_spacing());
+      solution.contact_radius = extrapolated_edge(points, 3 * system.finest_spacing());
       solution.central_pressure = pressure_on_axis(points, solution.contact_radius);
       solution.r.resize(Eigen::Index(points.size()));
       solution.pressure.resize(solution.r.size());
