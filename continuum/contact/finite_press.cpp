@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "continuum/contact/finite_press.h"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -9,7 +10,9 @@ namespace boba::continuum {
 namespace {
 
 constexpr int max_newton = 25;
+/// Shares of a Newton step and of a load below which the search ends.
 constexpr double shortest_step = 1. / 64;
+constexpr double shortest_load = 1. / 256;
 constexpr double tolerance = 1e-9;
 
 PressState between(const PressState& from, const PressState& to, double share) {
@@ -105,8 +108,9 @@ PressState FinitePress::press(double from, double plate, const InterfaceLaw& int
       continue;
     }
     step /= 2;
-    if (std::abs(step) < shortest_step * std::abs(plate - from)) {
-      give_up(fmt::format(" at plate height {:.6g}", goal));
+    if (std::abs(step) < shortest_load * std::abs(plate - from)) {
+      give_up(fmt::format(" at plate height {:.6g}, {:.1f} % of the way from {:.6g} to {:.6g},", goal,
+                          100 * (at - from) / (plate - from), from, plate));
     }
   }
   PressState result = state_;
@@ -134,19 +138,59 @@ PressState FinitePress::move(const Eigen::VectorXd& guess) {
       continue;
     }
     step /= 2;
-    if (step < shortest_step) {
-      give_up("");
+    if (step < shortest_load) {
+      give_up(fmt::format(" {:.1f} % of the way from the last load to the next", 100 * at));
     }
   }
   return state_;
 }
 
-void FinitePress::give_up(const std::string& where) const {
+double FinitePress::lowest_stiffness(const Eigen::VectorXd& u) {
+  solver_.factorise(body_.stiffness(law_, u));
+  SparseMatrix pressed(body_.n_unknowns(), 0);
+  if (surface_) {
+    std::vector<Eigen::Index> active;
+    for (std::size_t i = 0; i < state_.active.size(); ++i) {
+      if (state_.active[i]) {
+        active.push_back(Eigen::Index(i));
+      }
+    }
+    pressed.resize(body_.n_unknowns(), Eigen::Index(active.size()));
+    for (std::size_t k = 0; k < active.size(); ++k) {
+      pressed.col(Eigen::Index(k)) = surface_->loads().col(active[k]);
+    }
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> compliance(solver_.condense(pressed));
+  Eigen::VectorXd x(body_.n_unknowns());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    x[i] = std::sin(double(i)); // a start that is orthogonal to nothing
+  }
+  x = body_.condensed(x);
+  double eigenvalue = 0;
+  for (int step = 0; step < 60; ++step) {
+    x.normalize();
+    Eigen::VectorXd y = solver_.solve(x);
+    if (pressed.cols() > 0) { // the plate holds what it presses
+      y -= solver_.solve(pressed * compliance.solve(pressed.transpose() * y));
+    }
+    eigenvalue = 1 / x.dot(y);
+    x = y;
+  }
+  return eigenvalue;
+}
+
+void FinitePress::give_up(const std::string& where) {
   const Ellipticity last = ellipticity(body_, law_, state_.displacement);
-  throw NotSettled(fmt::format("Newton's method did not settle{} in load steps down to 1/64 of the load: residual {:.3e} "
-                               "(goal {:.3e}). Of the last settled state the lowest eigenvalue of the acoustic tensor is "
-                               "{:.3e} at r = {:.4g}, z = {:.4g}; near 0 the law itself is unstable",
-                               where, last_residual_, last_goal_, last.lowest, last.r, last.z));
+  const double unloaded = lowest_stiffness(Eigen::VectorXd::Zero(body_.n_unknowns()));
+  const double left = lowest_stiffness(state_.displacement) / unloaded;
+  const char* reason = !(last.lowest > 0) ? "the law has lost ellipticity"
+                       : left < 0.2       ? "the body is at its limit load: there is no equilibrium near by beyond it"
+                                          : "the reason is not known; try smaller loads";
+  throw NotSettled(
+      fmt::format("Newton's method did not settle{} in load steps down to 1/{} of the load: residual {:.3e} (goal "
+                  "{:.3e}). At the last settled state the lowest eigenvalue of the stiffness is {:.3g} of the unloaded "
+                  "body's, that of the acoustic tensor {:.3e} (at r = {:.4g}, z = {:.4g}): {}",
+                  where, 1 / shortest_load, last_residual_, last_goal_, left, last.lowest, last.r, last.z, reason));
 }
 
 Ellipticity ellipticity(const MeridianBody& body, const HyperelasticLaw& law, const Eigen::VectorXd& u) {

@@ -27,7 +27,9 @@ public:
 private:
   bool newton(double plate, const InterfaceLaw& interface, PressState& state);
   double residual(const PressState& state, double* scale) const;
-  [[noreturn]] void give_up(const std::string& where) const;
+  /// Lowest eigenvalue of the tangent stiffness at u, with the pressed vertices held: it falls to 0 at a limit load.
+  double lowest_stiffness(const Eigen::VectorXd& u);
+  [[noreturn]] void give_up(const std::string& where);
 
   const MeridianBody& body_;
   const HyperelasticLaw& law_;
