@@ -47,7 +47,8 @@ public:
         ->required();
     sphere_->add_option("--against", options_.against, "plates, or sphere: two equal spheres, approach of the centres")
         ->check(CLI::IsMember({"plates", "sphere"}));
-    sphere_->add_option("--elements-across", options_.elements_across, "elements across the contact radius, >= 8 (48; 10 in three dimensions)");
+    sphere_->add_option("--elements-across", options_.elements_across, 
+                        "elements across the contact radius, >= 8 (48; 10 in three dimensions)");
     cylinder_ = app.add_subcommand("cylinder", "a cylinder between two plates, held or sliding");
     common(*cylinder_);
     cylinder_->add_option("--height", options_.height, "height between the held ends")->required();
@@ -56,7 +57,8 @@ public:
     cylinder_->add_option("--strain", options_.strains, "nominal compressive strains, comma separated")
         ->delimiter(',')
         ->required();
-    cylinder_->add_option("--corner", options_.corner, "element size at the held corner, in units of min(R, h/2); 0.001, finite 0.02");
+    cylinder_->add_option("--corner", options_.corner,
+                          "element size at the held corner, in units of min(R, h/2); 0.001, finite 0.02");
   }
 
   int run(std::ostream& warnings) override {

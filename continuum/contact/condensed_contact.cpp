@@ -95,8 +95,8 @@ ContactSolution solve(const CondensedContact& problem, const InterfaceLaw& inter
       }
     }
   }
-  throw NotSettled(fmt::format("the active set did not settle in {} iterations: {} nodes contradict it, lowest pressure "
-                               "{:.3e}, largest overlap {:.3e}",
+  throw NotSettled(fmt::format("the active set did not settle in {} iterations: {} nodes contradict it, lowest "
+                               "pressure {:.3e}, largest overlap {:.3e}",
                                max_iterations, wrong.size(), p.minCoeff(),
                                (problem.overlap - problem.compliance * p).maxCoeff()));
 }

@@ -10,6 +10,7 @@ namespace boba::continuum {
 namespace {
 
 constexpr int max_newton = 25;
+constexpr int max_held_rounds = 30;
 /// Shares of a Newton step and of a load below which the search ends.
 constexpr double shortest_step = 1. / 64;
 constexpr double shortest_load = 1. / 256;
@@ -20,6 +21,26 @@ PressState between(const PressState& from, const PressState& to, double share) {
   state.displacement = from.displacement + share * (to.displacement - from.displacement);
   state.pressure = from.pressure + share * (to.pressure - from.pressure);
   return state;
+}
+
+std::vector<Eigen::Index> members(const std::vector<bool>& active) {
+  std::vector<Eigen::Index> result;
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    if (active[i]) {
+      result.push_back(Eigen::Index(i));
+    }
+  }
+  return result;
+}
+
+/// Nodal forces of unit pressures at the active vertices.
+SparseMatrix columns_of(const ContactSurface& surface, const std::vector<bool>& active) {
+  const auto held = members(active);
+  SparseMatrix result(surface.loads().rows(), Eigen::Index(held.size()));
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    result.col(Eigen::Index(k)) = surface.loads().col(held[k]);
+  }
+  return result;
 }
 
 } // namespace
@@ -45,24 +66,71 @@ double FinitePress::residual(const PressState& state, double* scale) const {
   return body_.condensed(force).norm();
 }
 
+PressState FinitePress::full_step(double plate, const InterfaceLaw& interface, const PressState& state) {
+  PressState next = state;
+  const Eigen::VectorXd rest = body_.condensed(-body_.internal_force(law_, state.displacement));
+  const SparseMatrix stiffness = body_.stiffness(law_, state.displacement);
+  solver_.factorise(stiffness);
+  if (!surface_) {
+    next.displacement += body_.distributed(solver_.solve(rest));
+    return next;
+  }
+  if (interface.rigid() && !solver_.is_positive()) {
+    return held_step(plate, stiffness, rest, state);
+  }
+  const Eigen::VectorXd free = state.displacement + body_.distributed(solver_.solve(rest));
+  const Eigen::MatrixXd compliance = solver_.condense(surface_->loads());
+  const Eigen::VectorXd overlap = surface_->overlap(plate, free);
+  const ContactSolution contact = solve({compliance, surface_->area(), overlap}, interface, state.active);
+  next.pressure = contact.pressure;
+  next.active = contact.active;
+  next.active_set_iterations += contact.iterations;
+  const Eigen::VectorXd pull = rest - body_.condensed(surface_->loads() * contact.pressure);
+  next.displacement += body_.distributed(solver_.solve(pull));
+  return next;
+}
+
+PressState FinitePress::held_step(double plate, const SparseMatrix& stiffness, const Eigen::VectorXd& rest,
+                                  const PressState& state) {
+  PressState next = state;
+  const Eigen::VectorXd overlap = surface_->overlap(plate, state.displacement);
+  for (int round = 0; round < max_held_rounds; ++round) {
+    const std::vector<Eigen::Index> held = members(next.active);
+    const SparseMatrix pressed = columns_of(*surface_, next.active);
+    // Springs on what is held anyway change nothing but the definiteness of the matrix.
+    const Eigen::VectorXd springs =
+        (10 * stiffness.diagonal().mean()) * surface_->area()(held).cwiseAbs2().cwiseInverse();
+    DirectSolver solver;
+    solver.factorise(stiffness + SparseMatrix(pressed * springs.asDiagonal() * SparseMatrix(pressed.transpose())));
+    const Eigen::VectorXd gap = overlap(held);
+    const Eigen::VectorXd free = solver.solve(rest - body_.condensed(pressed * springs.cwiseProduct(gap)));
+    const Eigen::VectorXd pressure =
+        solver.condense(pressed).ldlt().solve(gap + pressed.transpose() * body_.distributed(free));
+    next.displacement =
+        state.displacement + body_.distributed(free - solver.solve(body_.condensed(pressed * pressure)));
+    next.pressure.setZero();
+    next.pressure(held) = pressure;
+    ++next.active_set_iterations;
+    const Eigen::VectorXd left = surface_->overlap(plate, next.displacement);
+    const double slack = 1e-13 * overlap.cwiseAbs().maxCoeff();
+    bool changed = false;
+    for (std::size_t i = 0; i < next.active.size(); ++i) {
+      const auto k = Eigen::Index(i);
+      const bool active = next.active[i] ? next.pressure[k] >= 0 : left[k] > slack;
+      changed = changed || active != next.active[i];
+      next.active[i] = active;
+    }
+    if (!changed) {
+      return next;
+    }
+  }
+  throw NotSettled(fmt::format("the active set did not settle in {} rounds under an unstable tangent", max_held_rounds));
+}
+
 bool FinitePress::newton(double plate, const InterfaceLaw& interface, PressState& state) {
   double merit = std::numeric_limits<double>::infinity();
   for (int step = 0; step < max_newton; ++step) {
-    PressState next = state;
-    const Eigen::VectorXd rest = body_.condensed(-body_.internal_force(law_, state.displacement));
-    solver_.factorise(body_.stiffness(law_, state.displacement));
-    Eigen::VectorXd pull = rest;
-    if (surface_) {
-      const Eigen::VectorXd free = state.displacement + body_.distributed(solver_.solve(rest));
-      const Eigen::MatrixXd compliance = solver_.condense(surface_->loads());
-      const Eigen::VectorXd overlap = surface_->overlap(plate, free);
-      const ContactSolution contact = solve({compliance, surface_->area(), overlap}, interface, state.active);
-      next.pressure = contact.pressure;
-      next.active = contact.active;
-      next.active_set_iterations += contact.iterations;
-      pull -= body_.condensed(surface_->loads() * contact.pressure);
-    }
-    next.displacement = state.displacement + body_.distributed(solver_.solve(pull));
+    const PressState next = full_step(plate, interface, state);
     double share = 1;
     for (;; share /= 2) {
       if (share < shortest_step) {
@@ -149,16 +217,7 @@ double FinitePress::lowest_stiffness(const Eigen::VectorXd& u) {
   solver_.factorise(body_.stiffness(law_, u));
   SparseMatrix pressed(body_.n_unknowns(), 0);
   if (surface_) {
-    std::vector<Eigen::Index> active;
-    for (std::size_t i = 0; i < state_.active.size(); ++i) {
-      if (state_.active[i]) {
-        active.push_back(Eigen::Index(i));
-      }
-    }
-    pressed.resize(body_.n_unknowns(), Eigen::Index(active.size()));
-    for (std::size_t k = 0; k < active.size(); ++k) {
-      pressed.col(Eigen::Index(k)) = surface_->loads().col(active[k]);
-    }
+    pressed = columns_of(*surface_, state_.active);
   }
   const Eigen::LDLT<Eigen::MatrixXd> compliance(solver_.condense(pressed));
   Eigen::VectorXd x(body_.n_unknowns());

@@ -25,6 +25,11 @@ public:
   PressState move(const Eigen::VectorXd& guess);
 
 private:
+  /// The state that a full Newton step leads to.
+  PressState full_step(double plate, const InterfaceLaw& interface, const PressState& state);
+  /// The same where the body alone is unstable under its pressures and only the plate, which holds it, makes it stable.
+  PressState held_step(double plate, const SparseMatrix& stiffness, const Eigen::VectorXd& rest,
+                       const PressState& state);
   bool newton(double plate, const InterfaceLaw& interface, PressState& state);
   double residual(const PressState& state, double* scale) const;
   /// Lowest eigenvalue of the tangent stiffness at u, with the pressed vertices held: it falls to 0 at a limit load.

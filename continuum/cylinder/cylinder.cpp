@@ -123,10 +123,8 @@ double local_axial_strain(const std::vector<FieldPoint>& side) {
 }
 
 void check(const CylinderProblem& problem) {
-  check_positive("radius", problem.radius);
+  check(static_cast<const CompressedBody&>(problem));
   check_positive("height", problem.height);
-  check(problem.material);
-  check(problem.interface);
   if (problem.strains.empty()) {
     throw std::invalid_argument("strain = (none) is not allowed: give at least one nominal strain in (-1, 1)");
   }

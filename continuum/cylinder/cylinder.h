@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "continuum/contact/interface_law.h"
+#include "continuum/contact/compressed_body.h"
 #include "continuum/cylinder/cylinder_mesh.h"
-#include "continuum/elasticity/hyperelastic.h"
 
 namespace boba::continuum {
 
@@ -14,40 +13,24 @@ enum class Ends {
   bonded
 };
 
-/// One compressed cylinder. Lengths and stresses in any consistent unit.
-struct CylinderProblem {
-  double radius = 1;
+/// One compressed cylinder.
+struct CylinderProblem : CompressedBody {
   /// Height between the held ends.
   double height = 2;
-  Material material;
   Ends ends = Ends::bonded;
   /// Nominal compressive strains: shortening over height; negative ones stretch.
   std::vector<double> strains = {0.01};
-  /// Layer between sliding ends and plates.
-  InterfaceLaw interface;
-  /// Law of finite kinematics; null: small strain.
-  std::shared_ptr<const HyperelasticLaw> finite_law;
-  Discretisation discretisation;
   CylinderMeshSize mesh;
 };
 
-struct CylinderLoad {
+struct CylinderLoad : CompressionLoad {
   double strain = 0;
-  /// Axial force, compression positive.
-  double force = 0;
   /// Force / (pi R^2 strain).
   double apparent_modulus = 0;
   /// Radial strain of the side at mid-height over the nominal axial strain.
   double midheight_poisson = 0;
   /// The same over the axial strain of the side at mid-height.
   double midheight_poisson_local = 0;
-  int newton_iterations = 0;
-  /// Finite kinematics: lowest eigenvalue of the acoustic tensor over mu; 1 at rest or less.
-  double ellipticity = 0;
-  double seconds = 0;
-  /// The side, from mid-height to the end.
-  std::vector<FieldPoint> profile;
-  Eigen::VectorXd displacement;
 };
 
 struct CylinderResult {

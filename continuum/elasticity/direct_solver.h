@@ -17,6 +17,8 @@ class DirectSolver {
 public:
   /// Factorises the symmetric matrix (only its lower triangle is read). Throws std::runtime_error when it is singular.
   void factorise(const SparseMatrix& matrix);
+  /// True when the factorised matrix is positive definite.
+  bool is_positive() const { return factor_.vectorD().minCoeff() > 0; }
   /// Returns matrix^-1 rhs.
   Eigen::VectorXd solve(const Eigen::VectorXd& rhs) const;
   /// Returns B^T matrix^-1 B for a sparse B with few columns, never forming matrix^-1 B.

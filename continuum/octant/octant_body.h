@@ -34,7 +34,7 @@ struct OctantSolution {
   Duration assemble, precondition, solve;
 };
 
-/// Small-strain elasticity on an octant in three dimensions: p4est mesh, PETSc conjugate gradients, algebraic multigrid.
+/// Small-strain elasticity on an octant in three dimensions: p4est mesh, conjugate gradients with algebraic multigrid.
 ///
 /// Runs on all ranks of MPI_COMM_WORLD, which must be initialised (MpiSession) by the caller; every function is
 /// collective.

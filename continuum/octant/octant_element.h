@@ -26,7 +26,8 @@ public:
   Eigen::MatrixXd stiffness(const Material& material, bool projected) const;
   Eigen::VectorXd body_force(const VectorField& force) const;
   /// Squares of the L2 norms of the error of u and of its gradient.
-  Eigen::Vector2d squared_error(const Eigen::VectorXd& u, const VectorField& value, const GradientField& gradient) const;
+  Eigen::Vector2d squared_error(const Eigen::VectorXd& u, const VectorField& value,
+                                const GradientField& gradient) const;
 
 private:
   Eigen::Index at(unsigned node, unsigned component) const { return index_[3 * node + component]; }

@@ -178,9 +178,7 @@ private:
 } // namespace
 
 void check(const SphereProblem& problem) {
-  check_positive("radius", problem.radius);
-  check(problem.material);
-  check(problem.interface);
+  check(static_cast<const CompressedBody&>(problem));
   if (problem.approaches.empty()) {
     throw std::invalid_argument("approach = (none) is not allowed: give at least one in (0, 2 radius)");
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "continuum/contact/compressed_body.h"
 #include "continuum/contact/finite_press.h"
 #include "continuum/sphere/hertz.h"
 #include "continuum/sphere/sphere_mesh.h"
@@ -8,22 +9,15 @@
 namespace boba::continuum {
 
 /// One sphere between two frictionless plates (by symmetry also two equal spheres against each other).
-struct SphereProblem {
-  double radius = 1;
-  Material material;
+struct SphereProblem : CompressedBody {
   /// Approaches of the two plates, total: each plate travels half.
   std::vector<double> approaches;
-  InterfaceLaw interface;
-  /// Law of finite kinematics; null: small strain.
-  std::shared_ptr<const HyperelasticLaw> finite_law;
-  Discretisation discretisation;
   /// Elements across the contact radius at its edge; at least 8.
   double elements_across = 48;
 };
 
-struct SphereLoad {
+struct SphereLoad : CompressionLoad {
   double approach = 0;
-  double force = 0;
   /// Radius of the contact: where it lies now with finite kinematics, on the unpressed body with linear ones.
   double contact_radius = 0;
   double reference_contact_radius = 0;
@@ -35,18 +29,11 @@ struct SphereLoad {
   /// What Hertz's theory says at the same approach.
   Hertz hertz{};
   int active_set_iterations = 0;
-  int newton_iterations = 0;
-  /// Finite kinematics: lowest eigenvalue of the acoustic tensor over mu.
-  double ellipticity = 0;
   int n_unknowns = 0;
   int n_contact_unknowns = 0;
-  double seconds = 0;
   /// r, p, overlap of the vertices of the contact surface.
   Eigen::VectorXd r, pressure, overlap;
-  /// The surface from equator to pole.
-  std::vector<FieldPoint> profile;
   std::shared_ptr<MeridianBody> body;
-  Eigen::VectorXd displacement;
 };
 
 /// Throws std::invalid_argument (name, value, range) for a problem that cannot be posed.

@@ -113,6 +113,28 @@ TEST(FiniteCylinder, SlidingEndsFollowTheUniaxialLaw) {
   }
 }
 
+TEST(FiniteCylinder, StopsAtTheLimitStrainOfTheLawAndSaysSo) {
+  // Free sides: with x = (lateral stretch)^2 and nu = -0.5 the law's side is in equilibrium where x - (ln x)/2 = 1 + (ln l)/2.
+  // The left side is lowest, 1/2 + (ln 2)/2, at x = 1/2: no state is shorter than l = exp(ln 2 - 1).
+  const double limit = 1 - 2 / std::numbers::e;
+  CylinderProblem problem;
+  problem.height = 1;
+  problem.material = {1, -0.5};
+  problem.ends = Ends::sliding;
+  problem.finite_law = std::make_shared<NeoHookean>(problem.material);
+  problem.mesh.corner = 0.2;
+  problem.strains = {0.15, 0.25, limit - 1e-3};
+  EXPECT_EQ(solve(problem).loads.size(), 3U);
+  problem.strains.back() = limit + 1e-3;
+  std::string message;
+  try {
+    solve(problem);
+  } catch (const NotSettled& error) {
+    message = error.what();
+  }
+  EXPECT_NE(message.find("limit load"), std::string::npos) << message;
+}
+
 TEST(FiniteCylinder, TendsToTheLinearOneAtFirstOrder) {
   for (const double nu : {-0.5, 0.4}) {
     CylinderProblem problem;

@@ -104,7 +104,7 @@ TEST(Octant, SphereAgreesWithTheMeridian) {
     problem.material = {1, nu};
     problem.approaches = {0.04};
     const SphereLoad flat = solve(problem).front();
-    OctantShape shape = graded_sphere(1, 0.95 * flat.contact_radius, 1.05 * flat.contact_radius, 10);
+    OctantShape shape = graded_sphere(1, 0.9 * flat.contact_radius, 1.1 * flat.contact_radius, 10);
     shape.refinements = 1;
     OctantBody body(shape, {2});
     const OctantSolution solution = body.press(problem.material, 0.98, 1.1 * flat.contact_radius);
