@@ -33,7 +33,8 @@ struct Options {
   std::string kinematics = "linear", law = "neo-hookean", curve;
   double exponent = 2;
   int foam_terms = 1;
-  std::string ends = "bonded", against = "plates", interface = "rigid", formulation = "automatic", multigrid = "gamg", output;
+  std::string ends = "bonded", against = "plates", interface = "rigid", formulation = "automatic", multigrid = "gamg",
+              output;
   bool force = false, no_fields = false;
 };
 
@@ -47,7 +48,7 @@ public:
         ->required();
     sphere_->add_option("--against", options_.against, "plates, or sphere: two equal spheres, approach of the centres")
         ->check(CLI::IsMember({"plates", "sphere"}));
-    sphere_->add_option("--elements-across", options_.elements_across, 
+    sphere_->add_option("--elements-across", options_.elements_across,
                         "elements across the contact radius, >= 8 (48; 10 in three dimensions)");
     cylinder_ = app.add_subcommand("cylinder", "a cylinder between two plates, held or sliding");
     common(*cylinder_);
@@ -61,9 +62,7 @@ public:
                           "element size at the held corner, in units of min(R, h/2); 0.001, finite 0.02");
   }
 
-  int run(std::ostream& warnings) override {
-    return sphere_->parsed() ? run_sphere(warnings) : run_cylinder(warnings);
-  }
+  int run(std::ostream& warnings) override { return sphere_->parsed() ? run_sphere(warnings) : run_cylinder(warnings); }
 
 private:
   void common(CLI::App& app) {
@@ -116,8 +115,9 @@ private:
     check(material);
     if (options_.law == "neo-hookean") {
       if (material.poisson < 0) {
-        warnings << "boba-continuum: warning: with poisson < 0 the neo-Hookean energy falls without bound as the volume "
-                    "goes to 0, and points beside edges collapse early; --law foam does not\n";
+        warnings
+            << "boba-continuum: warning: with poisson < 0 the neo-Hookean energy falls without bound as the volume "
+               "goes to 0, and points beside edges collapse early; --law foam does not\n";
       }
       return std::make_shared<NeoHookean>(material);
     }
@@ -128,9 +128,10 @@ private:
   }
 
   json parameters(const std::shared_ptr<const HyperelasticLaw>& law) const {
-    json result = {{"radius", options_.radius},       {"young", options_.young},   {"poisson", options_.poisson},
-                   {"interface", options_.interface}, {"kinematics", options_.kinematics}, {"degree", options_.degree},
-                   {"dimension", options_.dimension},                  {"formulation", options_.formulation}};
+    json result = {{"radius", options_.radius},         {"young", options_.young},
+                   {"poisson", options_.poisson},       {"interface", options_.interface},
+                   {"kinematics", options_.kinematics}, {"degree", options_.degree},
+                   {"dimension", options_.dimension},   {"formulation", options_.formulation}};
     if (options_.interface == "compliant") {
       result["c1"] = options_.c1;
       result["c3"] = options_.c3;
@@ -223,7 +224,8 @@ private:
       throw std::invalid_argument(fmt::format("slab = {} is not allowed: it must be >= 0", options_.slab));
     }
     if (!(problem.mesh.corner > 0 && problem.mesh.corner <= 1)) {
-      throw std::invalid_argument(fmt::format("corner = {} is not allowed: it must lie in (0, 1]", problem.mesh.corner));
+      throw std::invalid_argument(
+          fmt::format("corner = {} is not allowed: it must lie in (0, 1]", problem.mesh.corner));
     }
     if (options_.dimension == 3) {
       return run_in_three_dimensions(problem, 0);
@@ -260,6 +262,8 @@ private:
 
 } // namespace
 
-std::unique_ptr<Commands> add_commands(CLI::App& app) { return std::make_unique<CommandsImpl>(app); }
+std::unique_ptr<Commands> add_commands(CLI::App& app) {
+  return std::make_unique<CommandsImpl>(app);
+}
 
 } // namespace boba::continuum

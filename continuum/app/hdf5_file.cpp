@@ -20,15 +20,17 @@ template <class Id> Id checked(Id id, const char* what, const std::string& name)
 Hdf5File::Hdf5File(const std::filesystem::path& path)
     : file_(checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), "create", path.string())) {}
 
-Hdf5File::~Hdf5File() { H5Fclose(file_); }
+Hdf5File::~Hdf5File() {
+  H5Fclose(file_);
+}
 
 void Hdf5File::array(const std::string& name, const std::vector<double>& values, const std::string& unit) {
   const hsize_t size = values.size();
   const hid_t space = checked(H5Screate_simple(1, &size, nullptr), "make a space for", name);
   const hid_t links = H5Pcreate(H5P_LINK_CREATE);
   H5Pset_create_intermediate_group(links, 1);
-  const hid_t set = checked(H5Dcreate2(file_, name.c_str(), H5T_IEEE_F64LE, space, links, H5P_DEFAULT, H5P_DEFAULT),
-                            "create", name);
+  const hid_t set =
+      checked(H5Dcreate2(file_, name.c_str(), H5T_IEEE_F64LE, space, links, H5P_DEFAULT, H5P_DEFAULT), "create", name);
   checked(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "write", name);
   H5Dclose(set);
   H5Pclose(links);

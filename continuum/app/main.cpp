@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // boba-continuum cylinder | sphere: one compressed body by finite elements.
 #include "continuum/app/commands.h"
-
 #include "continuum/contact/condensed_contact.h"
 
 #include <CLI/CLI.hpp>

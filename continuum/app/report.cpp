@@ -38,7 +38,9 @@ json profile_of(const std::vector<FieldPoint>& points) {
   return {{"r", r}, {"z", z}, {"u_r", u_r}, {"u_z", u_z}};
 }
 
-json array_of(const Eigen::VectorXd& values) { return std::vector<double>(values.data(), values.data() + values.size()); }
+json array_of(const Eigen::VectorXd& values) {
+  return std::vector<double>(values.data(), values.data() + values.size());
+}
 
 json summary_header(const char* problem, json parameters) {
   return {{"schema", "boba-continuum-summary"},
@@ -62,8 +64,7 @@ json report(const std::vector<SphereLoad>& loads, const SphereProblem& problem, 
          {"hertz_contact_radius", load.hertz.contact_radius},
          {"hertz_peak_pressure", load.hertz.peak_pressure},
          {"tatara_approach",
-          2 * tatara_approach(problem.radius, problem.material, load.force,
-                              load.reference_contact_radius)},
+          2 * tatara_approach(problem.radius, problem.material, load.force, load.reference_contact_radius)},
          {"active_set_iterations", load.active_set_iterations},
          {"newton_iterations", load.newton_iterations},
          {"ellipticity", load.ellipticity},

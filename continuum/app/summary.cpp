@@ -92,15 +92,31 @@ void write_summary(const std::filesystem::path& folder, const json& document) {
 }
 
 std::string unit_of(const std::string& field) {
-  static const std::map<std::string, std::string> units = {
-      {"approach", "length"},         {"contact_radius", "length"},      {"hertz_contact_radius", "length"},
-      {"equatorial_bulge", "length"}, {"reference_contact_radius", "length"}, {"tatara_approach", "length"},     {"r", "length"},
-      {"z", "length"},                {"u_r", "length"},                 {"u_z", "length"},
-      {"overlap", "length"},          {"force", "stress*length^2"},      {"hertz_force", "stress*length^2"},
-      {"peak_pressure", "stress"},    {"central_pressure", "stress"},    {"hertz_peak_pressure", "stress"},
-      {"pressure", "stress"},         {"apparent_modulus", "stress"},    {"seconds", "s"},
-      {"assemble_seconds", "s"},       {"precondition_seconds", "s"},      {"solve_seconds", "s"},
-      {"assemble_cpu_seconds", "s"},   {"precondition_cpu_seconds", "s"},  {"solve_cpu_seconds", "s"}};
+  static const std::map<std::string, std::string> units = {{"approach", "length"},
+                                                           {"contact_radius", "length"},
+                                                           {"hertz_contact_radius", "length"},
+                                                           {"equatorial_bulge", "length"},
+                                                           {"reference_contact_radius", "length"},
+                                                           {"tatara_approach", "length"},
+                                                           {"r", "length"},
+                                                           {"z", "length"},
+                                                           {"u_r", "length"},
+                                                           {"u_z", "length"},
+                                                           {"overlap", "length"},
+                                                           {"force", "stress*length^2"},
+                                                           {"hertz_force", "stress*length^2"},
+                                                           {"peak_pressure", "stress"},
+                                                           {"central_pressure", "stress"},
+                                                           {"hertz_peak_pressure", "stress"},
+                                                           {"pressure", "stress"},
+                                                           {"apparent_modulus", "stress"},
+                                                           {"seconds", "s"},
+                                                           {"assemble_seconds", "s"},
+                                                           {"precondition_seconds", "s"},
+                                                           {"solve_seconds", "s"},
+                                                           {"assemble_cpu_seconds", "s"},
+                                                           {"precondition_cpu_seconds", "s"},
+                                                           {"solve_cpu_seconds", "s"}};
   const auto found = units.find(field);
   return found == units.end() ? "1" : found->second;
 }

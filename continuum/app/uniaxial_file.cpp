@@ -25,8 +25,8 @@ std::vector<UniaxialState> read_uniaxial_test(const std::filesystem::path& file)
     if (right) {
       result.push_back({1 - values[0], 1 + values[2], -values[1]});
     } else if (number > 1) {
-      throw std::invalid_argument(fmt::format(
-          "fit = {}, line {}: \"{}\" is not `strain, stress, lateral strain`", file.string(), number, line));
+      throw std::invalid_argument(fmt::format("fit = {}, line {}: \"{}\" is not `strain, stress, lateral strain`",
+                                              file.string(), number, line));
     }
   }
   return result;

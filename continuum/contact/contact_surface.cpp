@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "continuum/contact/contact_surface.h"
+
 #include "continuum/elasticity/meridian_parts.h"
 
 #include <algorithm>

@@ -124,7 +124,8 @@ PressState FinitePress::held_step(double plate, const SparseMatrix& stiffness, c
       return next;
     }
   }
-  throw NotSettled(fmt::format("the active set did not settle in {} rounds under an unstable tangent", max_held_rounds));
+  throw NotSettled(
+      fmt::format("the active set did not settle in {} rounds under an unstable tangent", max_held_rounds));
 }
 
 bool FinitePress::newton(double plate, const InterfaceLaw& interface, PressState& state) {
@@ -144,7 +145,8 @@ bool FinitePress::newton(double plate, const InterfaceLaw& interface, PressState
       } catch (const Inverted&) {
         continue;
       }
-      if (std::isfinite(last_residual_) && (last_residual_ <= last_goal_ || last_residual_ < merit * (1 - 0.1 * share))) {
+      if (std::isfinite(last_residual_) &&
+          (last_residual_ <= last_goal_ || last_residual_ < merit * (1 - 0.1 * share))) {
         state = trial;
         break;
       }

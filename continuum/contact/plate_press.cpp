@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "continuum/contact/plate_press.h"
+
 #include "continuum/contact/pressure_profile.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "continuum/cylinder/cylinder.h"
+
 #include "continuum/contact/finite_press.h"
 
 #include <chrono>
@@ -13,7 +14,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 void describe(CylinderLoad& load, const CylinderProblem& problem, const MeridianBody& body) {
   const double area = std::numbers::pi * problem.radius * problem.radius;
@@ -37,8 +40,7 @@ void solve_linear(const CylinderProblem& problem, CylinderResult& result) {
   const MeridianBody& body = *result.body;
   DirectSolver solver;
   solver.factorise(body.stiffness(problem.material));
-  const Eigen::VectorXd lift =
-      body.lifted([&](double, double) { return Eigen::Vector2d(0, -problem.height / 2); });
+  const Eigen::VectorXd lift = body.lifted([&](double, double) { return Eigen::Vector2d(0, -problem.height / 2); });
   const Eigen::VectorXd pull = body.condensed(-body.internal_force(problem.material, lift));
   const Eigen::VectorXd unit = lift + body.distributed(solver.solve(pull));
   const double force = -body.axial_force_on(plate_side, body.internal_force(problem.material, unit));

@@ -36,7 +36,9 @@ void DirectSolver::factorise(const SparseMatrix& matrix) {
   }
 }
 
-Eigen::VectorXd DirectSolver::solve(const Eigen::VectorXd& rhs) const { return factor_.solve(rhs); }
+Eigen::VectorXd DirectSolver::solve(const Eigen::VectorXd& rhs) const {
+  return factor_.solve(rhs);
+}
 
 Eigen::MatrixXd DirectSolver::condense(const SparseMatrix& columns) const {
   // With P A P^T = L D L^T:  B^T A^-1 B = Y^T D^-1 Y,  Y = L^-1 P B: half the work of full solves.

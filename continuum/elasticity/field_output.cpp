@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "continuum/elasticity/field_output.h"
+
 #include "continuum/elasticity/meridian_parts.h"
 
 #include <array>
@@ -15,7 +16,7 @@
 namespace boba::continuum {
 namespace {
 
-constexpr std::array<const char*, 6> stress_names = {"stress_rr", "stress_zz",  "stress_hoop",
+constexpr std::array<const char*, 6> stress_names = {"stress_rr", "stress_zz",   "stress_hoop",
                                                      "stress_rz", "stress_mean", "stress_mises"};
 
 std::array<double, 6> components(const StressPoint& s) {

@@ -14,6 +14,8 @@ LinearLaw::LinearLaw(double shear, double lame) : tangent_(GradientTangent::Zero
   tangent_.block<2, 2>(1, 1).setConstant(shear);
 }
 
-GradientResponse LinearLaw::at(const Gradient& gradient) const { return {tangent_ * gradient, tangent_}; }
+GradientResponse LinearLaw::at(const Gradient& gradient) const {
+  return {tangent_ * gradient, tangent_};
+}
 
 } // namespace boba::continuum

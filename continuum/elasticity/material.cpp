@@ -16,8 +16,7 @@ void check_positive(const char* name, double value) {
 void check(const Material& material) {
   check_positive("young", material.young);
   if (!(material.poisson > -1 && material.poisson < 0.5)) {
-    throw std::invalid_argument(
-        fmt::format("poisson = {} is not allowed: it must lie in (-1, 0.5)", material.poisson));
+    throw std::invalid_argument(fmt::format("poisson = {} is not allowed: it must lie in (-1, 0.5)", material.poisson));
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "continuum/elasticity/meridian_body.h"
+
 #include "continuum/elasticity/meridian_element.h"
 #include "continuum/elasticity/meridian_parts.h"
 
@@ -49,7 +50,9 @@ Eigen::VectorXd to_eigen(const dealii::Vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.begin(), Eigen::Index(values.size()));
 }
 
-dealii::ComponentMask mask(bool radial, bool axial) { return dealii::ComponentMask(std::vector<bool>{radial, axial}); }
+dealii::ComponentMask mask(bool radial, bool axial) {
+  return dealii::ComponentMask(std::vector<bool>{radial, axial});
+}
 
 SparseMatrix to_eigen(const dealii::SparseMatrix<double>& matrix) {
   const int n = int(matrix.m());
@@ -85,8 +88,7 @@ struct ElementLaw {
 } // namespace
 
 bool is_projected(Formulation formulation, const Material& material) {
-  return formulation == Formulation::projected ||
-         (formulation == Formulation::automatic && material.poisson > 0.45);
+  return formulation == Formulation::projected || (formulation == Formulation::automatic && material.poisson > 0.45);
 }
 
 MeridianBody::Parts::Parts(MeridianMesh given, Discretisation choice, Held held_there)
@@ -115,8 +117,12 @@ MeridianBody::MeridianBody(MeridianMesh mesh, Discretisation discretisation)
 MeridianBody::~MeridianBody() = default;
 MeridianBody::MeridianBody(MeridianBody&&) noexcept = default;
 
-int MeridianBody::n_unknowns() const { return int(parts_->dofs.n_dofs()); }
-int MeridianBody::n_cells() const { return int(parts_->mesh.triangulation->n_active_cells()); }
+int MeridianBody::n_unknowns() const {
+  return int(parts_->dofs.n_dofs());
+}
+int MeridianBody::n_cells() const {
+  return int(parts_->mesh.triangulation->n_active_cells());
+}
 
 namespace {
 
@@ -199,8 +205,7 @@ std::vector<StressPoint> MeridianBody::stress(const GradientLaw& law, const Eige
 }
 
 std::vector<StressPoint> MeridianBody::stress(const Material& material, const Eigen::VectorXd& u) const {
-  return with_linear(*parts_, material,
-                     [&](const ElementLaw& law) { return collect_stress(*parts_, law, u, false); });
+  return with_linear(*parts_, material, [&](const ElementLaw& law) { return collect_stress(*parts_, law, u, false); });
 }
 
 std::vector<GradientPoint> MeridianBody::gradients(const Eigen::VectorXd& u) const {
@@ -230,8 +235,8 @@ Eigen::VectorXd MeridianBody::distributed(Eigen::VectorXd u) const {
 Eigen::VectorXd MeridianBody::lifted(const std::function<Eigen::Vector2d(double, double)>& value) const {
   std::map<global_dof_index, double> held;
   const PairFunction function(value);
-  dealii::VectorTools::interpolate_boundary_values(parts_->mapping, parts_->dofs, parts_->held.boundary, function,
-                                                   held, mask(parts_->held.radial, parts_->held.axial));
+  dealii::VectorTools::interpolate_boundary_values(parts_->mapping, parts_->dofs, parts_->held.boundary, function, held,
+                                                   mask(parts_->held.radial, parts_->held.axial));
   Eigen::VectorXd u = Eigen::VectorXd::Zero(n_unknowns());
   for (const auto& [index, entry] : held) {
     u[index] = entry;

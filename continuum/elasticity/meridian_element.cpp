@@ -140,8 +140,8 @@ Eigen::VectorXd MeridianElement::body_force(const std::function<Eigen::Vector2d(
 
 void MeridianElement::append_stress(const GradientLaw& law, double projected_lame, const Eigen::VectorXd& u,
                                     bool finite, std::vector<StressPoint>& result) const {
-  const Eigen::VectorXd volume =
-      projected_lame != 0 ? Eigen::VectorXd(projected_divergence() * u) : Eigen::VectorXd::Zero(Eigen::Index(weight_.size()));
+  const Eigen::VectorXd volume = projected_lame != 0 ? Eigen::VectorXd(projected_divergence() * u)
+                                                     : Eigen::VectorXd::Zero(Eigen::Index(weight_.size()));
   for (const unsigned q : values_.quadrature_point_indices()) {
     const Gradient gradient = gradient_[q] * u;
     Gradient piola = law.at(gradient).stress;

@@ -15,7 +15,11 @@ struct MpiSession::Handle {
 
 MpiSession::MpiSession() : handle_(std::make_unique<Handle>()) {}
 MpiSession::~MpiSession() = default;
-int MpiSession::rank() const { return int(dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD)); }
-int MpiSession::size() const { return int(dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD)); }
+int MpiSession::rank() const {
+  return int(dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD));
+}
+int MpiSession::size() const {
+  return int(dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
+}
 
 } // namespace boba::continuum

@@ -61,7 +61,9 @@ void OctantBody::assemble(const Material& material, OctantSolution& solution) {
   solution.assemble = {timer.wall_time(), timer.cpu_time()};
 }
 
-void OctantBody::finish(OctantSolution& solution) const { solution.profile = profile_of(*system_); }
+void OctantBody::finish(OctantSolution& solution) const {
+  solution.profile = profile_of(*system_);
+}
 
 OctantSolution OctantBody::solve_held(const Material& material, double shortening, bool bonded) {
   OctantSolution solution;

@@ -8,7 +8,9 @@
 namespace boba::continuum {
 namespace {
 
-Eigen::Vector3d place(const dealii::Point<3>& x) { return {x[0], x[1], x[2]}; }
+Eigen::Vector3d place(const dealii::Point<3>& x) {
+  return {x[0], x[1], x[2]};
+}
 
 /// 1 for degree 0; 1, x, y, z for degree 1.
 Eigen::RowVectorXd monomials(const dealii::Point<3>& x, unsigned degree) {
@@ -67,8 +69,8 @@ Eigen::MatrixXd OctantElement::stiffness(const Material& material, bool projecte
     for (unsigned l = 0; l < n; ++l) {
       for (unsigned c = 0; c < 3; ++c) {
         for (unsigned d = 0; d < 3; ++d) {
-          result(at(k, c), at(l, d)) = lame * integral[c][d](k, l) + shear * integral[d][c](k, l) +
-                                       (c == d ? shear * laplace(k, l) : 0);
+          result(at(k, c), at(l, d)) =
+              lame * integral[c][d](k, l) + shear * integral[d][c](k, l) + (c == d ? shear * laplace(k, l) : 0);
         }
       }
     }

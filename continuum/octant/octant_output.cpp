@@ -16,8 +16,8 @@ public:
   explicit Stress(const Material& material) : material_(material) {}
 
   std::vector<std::string> get_names() const override {
-    return {"stress_xx", "stress_yy", "stress_zz", "stress_yz", "stress_xz", "stress_xy", "stress_mean",
-            "stress_mises"};
+    return {"stress_xx", "stress_yy", "stress_zz",   "stress_yz",
+            "stress_xz", "stress_xy", "stress_mean", "stress_mises"};
   }
   std::vector<dealii::DataComponentInterpretation::DataComponentInterpretation>
   get_data_component_interpretation() const override {
@@ -35,8 +35,8 @@ public:
           h(i, j) = input.solution_gradients[q][i][j];
         }
       }
-      const Eigen::Matrix3d s = material_.shear() * (h + h.transpose()) +
-                                material_.lame() * h.trace() * Eigen::Matrix3d::Identity();
+      const Eigen::Matrix3d s =
+          material_.shear() * (h + h.transpose()) + material_.lame() * h.trace() * Eigen::Matrix3d::Identity();
       const double mean = s.trace() / 3;
       const double mises = std::sqrt(1.5) * (s - mean * Eigen::Matrix3d::Identity()).norm();
       const double values[] = {s(0, 0), s(1, 1), s(2, 2), s(1, 2), s(0, 2), s(0, 1), mean, mises};

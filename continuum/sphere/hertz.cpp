@@ -10,8 +10,7 @@ Hertz hertz(double radius, const Material& material, double approach) {
   Hertz result{};
   result.contact_radius = std::sqrt(radius * approach);
   result.force = 4. / 3 * material.plane() * result.contact_radius * approach;
-  result.peak_pressure =
-      1.5 * result.force / (std::numbers::pi * result.contact_radius * result.contact_radius);
+  result.peak_pressure = 1.5 * result.force / (std::numbers::pi * result.contact_radius * result.contact_radius);
   return result;
 }
 

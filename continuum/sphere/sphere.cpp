@@ -141,8 +141,8 @@ private:
     load.contact_radius = edge;
     if (problem_.finite_law) {
       load.contact_radius += radial_displacement_at(load.profile, edge);
-      load.ellipticity = check_ellipticity(*stage_->body, *problem_.finite_law, state.displacement) /
-                         problem_.material.shear();
+      load.ellipticity =
+          check_ellipticity(*stage_->body, *problem_.finite_law, state.displacement) / problem_.material.shear();
     }
     return load;
   }

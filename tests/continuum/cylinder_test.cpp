@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The compressed cylinder: exact states, limits, and its own convergence.
 #include "continuum/cylinder/cylinder.h"
-
 #include "verification_row.h"
 
 #include <numbers>
@@ -41,7 +40,8 @@ TEST(Cylinder, SlidingEndsAreUniaxialStress) {
     verify({fmt::format("sliding cylinder, nu = {}: stress field, largest error", nu), worst_stress, 0, 1e-9,
             "uniaxial stress", true});
     if (nu != 0) {
-      verify({fmt::format("sliding cylinder, nu = {}: Poisson ratio", nu), load.midheight_poisson_local, nu, 1e-9, "nu"});
+      verify(
+          {fmt::format("sliding cylinder, nu = {}: Poisson ratio", nu), load.midheight_poisson_local, nu, 1e-9, "nu"});
     }
   }
 }
@@ -90,9 +90,8 @@ TEST(Cylinder, BondedSpecimenConverges) {
   for (const double nu : {-0.5, 0.25, 0.4, 0.49}) {
     double value[3];
     for (int k = 0; k < 3; ++k) {
-      value[k] = bonded(7, 20, nu, {1e-2 / std::pow(8, k), 0.4 / (1 << k), 0.25 / (1 << k)})
-                     .loads.front()
-                     .apparent_modulus;
+      value[k] =
+          bonded(7, 20, nu, {1e-2 / std::pow(8, k), 0.4 / (1 << k), 0.25 / (1 << k)}).loads.front().apparent_modulus;
     }
     const double first = value[1] - value[0], second = value[2] - value[1];
     const double limit = std::abs(first) > 1e-12 ? value[2] + second * second / (first - second) : value[2];

@@ -2,7 +2,6 @@
 // The axisymmetric elements: orders of convergence with a manufactured solution, and no locking near nu = 1/2.
 #include "continuum/cylinder/cylinder_mesh.h"
 #include "continuum/elasticity/meridian_body.h"
-
 #include "verification_row.h"
 
 #include <numbers>
@@ -56,10 +55,10 @@ TEST(Elasticity, ManufacturedSolutionConvergesAtTheOrderOfTheElement) {
         continue; // Q1 / P0 is not a stable pair; nothing is promised for it
       }
       const unsigned fine = degree == 1 ? 6 : degree == 2 ? 5 : 4;
-      const Eigen::Vector2d order = (error_of(degree, formulation, 0.3, fine - 1).array() /
-                                     error_of(degree, formulation, 0.3, fine).array())
-                                        .log() /
-                                    std::log(2.);
+      const Eigen::Vector2d order =
+          (error_of(degree, formulation, 0.3, fine - 1).array() / error_of(degree, formulation, 0.3, fine).array())
+              .log() /
+          std::log(2.);
       const std::string what = fmt::format("manufactured, axisymmetric Q{}{}", degree,
                                            formulation == Formulation::projected ? " projected" : "");
       verify({what + ": order in L2", order[0], degree + 1., 0.1, "order p + 1", true});
@@ -75,8 +74,7 @@ double coarse_modulus(unsigned degree, Formulation formulation, double poisson, 
   DirectSolver solver;
   solver.factorise(body.stiffness(material));
   const Eigen::VectorXd lift = body.lifted([](double, double) { return Eigen::Vector2d(0, -0.5); });
-  const Eigen::VectorXd u =
-      lift + body.distributed(solver.solve(body.condensed(-body.internal_force(material, lift))));
+  const Eigen::VectorXd u = lift + body.distributed(solver.solve(body.condensed(-body.internal_force(material, lift))));
   return -body.axial_force_on(plate_side, body.internal_force(material, u)) / std::numbers::pi;
 }
 

@@ -2,7 +2,6 @@
 // Finite kinematics: laws against closed forms, bodies against the laws, and the limit of small strain.
 #include "continuum/cylinder/cylinder.h"
 #include "continuum/sphere/sphere.h"
-
 #include "verification_row.h"
 
 #include <numbers>
@@ -114,8 +113,8 @@ TEST(FiniteCylinder, SlidingEndsFollowTheUniaxialLaw) {
 }
 
 TEST(FiniteCylinder, StopsAtTheLimitStrainOfTheLawAndSaysSo) {
-  // Free sides: with x = (lateral stretch)^2 and nu = -0.5 the law's side is in equilibrium where x - (ln x)/2 = 1 + (ln l)/2.
-  // The left side is lowest, 1/2 + (ln 2)/2, at x = 1/2: no state is shorter than l = exp(ln 2 - 1).
+  // Free sides: with x = (lateral stretch)^2 and nu = -0.5 the law's side is in equilibrium where x - (ln x)/2 = 1 +
+  // (ln l)/2. The left side is lowest, 1/2 + (ln 2)/2, at x = 1/2: no state is shorter than l = exp(ln 2 - 1).
   const double limit = 1 - 2 / std::numbers::e;
   CylinderProblem problem;
   problem.height = 1;

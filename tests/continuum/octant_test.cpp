@@ -4,7 +4,6 @@
 #include "continuum/octant/mpi_session.h"
 #include "continuum/octant/octant_body.h"
 #include "continuum/sphere/sphere.h"
-
 #include "verification_row.h"
 
 #include <numbers>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The compressed sphere against the exact linear solution, Hertz, and published numbers.
 #include "continuum/sphere/sphere.h"
-
 #include "legendre_sphere.h"
 #include "verification_row.h"
 
