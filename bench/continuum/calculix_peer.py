@@ -140,14 +140,13 @@ def nodal(across, approach, folder):
     head = mesh_lines([body]) + symmetry(body)
     for _ in range(30):
         deck = head + [f"{n}, 2, 2, {height[n]:.15g}" for n in sorted(active)] + ["*NSET, NSET=TOP"]
-        deck += [f"{n}," for n in surface] + ["*STEP", "*STATIC", "*NODE PRINT, NSET=TOP", "RF", "*NODE PRINT, NSET=TOP",
-                                             "U", "*END STEP"]
+        deck += [f"{n}," for n in surface]
+        deck += ["*STEP", "*STATIC", "*NODE PRINT, NSET=TOP", "RF", "*NODE PRINT, NSET=TOP", "U", "*END STEP"]
         (folder / "deck.inp").write_text("\n".join(deck) + "\n")
         subprocess.run(["ccx", "-i", "deck"], cwd=folder, capture_output=True, text=True, check=False)
         blocks = (folder / "deck.dat").read_text().split("displacements")
-        reading = [{int(r[0]): float(r[2]) for r in map(str.split, block.splitlines()) if len(r) == 4 and r[0].isdigit()}
-                   for block in blocks]
-        reaction, u = reading
+        reaction, u = [{int(r[0]): float(r[2]) for r in map(str.split, block.splitlines())
+                        if len(r) == 4 and r[0].isdigit()} for block in blocks]
         # Corner and edge nodes of quadratic elements share a load unevenly: only the outermost ones are released.
         ordered = sorted(active, key=lambda n: body.nodes[n][0])
         pulled = [n for n in ordered[-3:] if reaction[n] > 0]

@@ -117,7 +117,7 @@ private:
       if (material.poisson < 0) {
         warnings
             << "boba-continuum: warning: with poisson < 0 the neo-Hookean energy falls without bound as the volume "
-               "goes to 0, and points beside edges collapse early; --law foam does not\n";
+               "goes to 0, and free sides collapse at a limit load; --law foam does not\n";
       }
       return std::make_shared<NeoHookean>(material);
     }
@@ -147,7 +147,31 @@ private:
     return result;
   }
 
-  template <class Problem> int run_in_three_dimensions(const Problem& problem, double elements_across) {
+  /// One warning for the first load that small strain cannot mean.
+  void warn_of_large_strain(const json& document, std::ostream& warnings) const {
+    if (options_.kinematics != "linear") {
+      return;
+    }
+    for (const auto& load : document.at("loads")) {
+      const double edge = load.value("contact_radius", 0.) / options_.radius;
+      const double strain = std::abs(load.value("strain", 0.));
+      if (edge > largest_linear_contact) {
+        warnings << fmt::format("boba-continuum: warning: at approach {} the contact radius is {:.3g} R, beyond what "
+                                "small strain can mean (about {} R); use --kinematics finite\n",
+                                load.at("approach").get<double>(), edge, largest_linear_contact);
+        return;
+      }
+      if (strain > largest_linear_strain) {
+        warnings << fmt::format("boba-continuum: warning: strain {} is beyond what small strain can mean (about {}); "
+                                "use --kinematics finite\n",
+                                load.at("strain").get<double>(), largest_linear_strain);
+        return;
+      }
+    }
+  }
+
+  template <class Problem>
+  int run_in_three_dimensions(const Problem& problem, double elements_across, std::ostream& warnings) {
     const MpiSession session;
     if (session.rank() == 0) {
       prepare_folder(options_.output, options_.force);
@@ -161,6 +185,7 @@ private:
                               options_.no_fields ? "" : options_.output};
     const json document = run_octant(problem, choice, chosen);
     if (session.rank() == 0) {
+      warn_of_large_strain(document, warnings);
       write_summary(options_.output, document);
       for (const auto& load : document.at("loads")) {
         fmt::print("{}\n", load.dump());
@@ -180,22 +205,16 @@ private:
     problem.elements_across = options_.elements_across.value_or(options_.dimension == 2 ? 48 : 10);
     check(problem);
     if (options_.dimension == 3) {
-      return run_in_three_dimensions(problem, problem.elements_across);
+      return run_in_three_dimensions(problem, problem.elements_across, warnings);
     }
     prepare_folder(options_.output, options_.force);
     const auto loads = solve(problem);
-    for (const auto& load : loads) {
-      if (!problem.finite_law && load.contact_radius > largest_linear_contact * problem.radius) {
-        warnings << fmt::format("boba-continuum: warning: at approach {} the contact radius is {:.3g} R, beyond what "
-                                "small strain can mean (about {} R); use --kinematics finite\n",
-                                load.approach, load.contact_radius / problem.radius, largest_linear_contact);
-        break;
-      }
-    }
     json chosen = parameters(problem.finite_law);
     chosen["against"] = options_.against;
     chosen["elements_across"] = problem.elements_across;
-    write_summary(options_.output, report(loads, problem, chosen));
+    const json document = report(loads, problem, chosen);
+    warn_of_large_strain(document, warnings);
+    write_summary(options_.output, document);
     if (!options_.no_fields) {
       write_fields(options_.output, loads, problem);
     }
@@ -228,23 +247,17 @@ private:
           fmt::format("corner = {} is not allowed: it must lie in (0, 1]", problem.mesh.corner));
     }
     if (options_.dimension == 3) {
-      return run_in_three_dimensions(problem, 0);
+      return run_in_three_dimensions(problem, 0, warnings);
     }
     prepare_folder(options_.output, options_.force);
     const auto result = solve(problem);
-    for (const double strain : problem.strains) {
-      if (!problem.finite_law && std::abs(strain) > largest_linear_strain) {
-        warnings << fmt::format("boba-continuum: warning: strain {} is beyond what small strain can mean (about {}); "
-                                "use --kinematics finite\n",
-                                strain, largest_linear_strain);
-        break;
-      }
-    }
     json chosen = parameters(problem.finite_law);
     chosen["height"] = options_.height;
     chosen["slab"] = options_.slab;
     chosen["ends"] = options_.ends;
-    write_summary(options_.output, report(result, problem, chosen));
+    const json document = report(result, problem, chosen);
+    warn_of_large_strain(document, warnings);
+    write_summary(options_.output, document);
     if (!options_.no_fields) {
       write_fields(options_.output, result, problem);
     }

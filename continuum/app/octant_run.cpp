@@ -32,7 +32,6 @@ json common(const OctantSolution& solution) {
           {"n_unknowns", solution.n_unknowns},
           {"cg_iterations", solution.iterations},
           {"active_set_iterations", solution.active_set_iterations},
-          {"profile", profile_of(solution.profile)},
           {"assemble_seconds", solution.assemble.wall},
           {"precondition_seconds", solution.precondition.wall},
           {"solve_seconds", solution.solve.wall},
@@ -40,6 +39,14 @@ json common(const OctantSolution& solution) {
           {"precondition_cpu_seconds", solution.precondition.cpu},
           {"solve_cpu_seconds", solution.solve.cpu},
           {"seconds", solution.assemble.wall + solution.precondition.wall + solution.solve.wall}};
+}
+
+std::vector<FieldPoint> scaled(std::vector<FieldPoint> points, double factor) {
+  for (auto& point : points) {
+    point.u_r *= factor;
+    point.u_z *= factor;
+  }
+  return points;
 }
 
 } // namespace
@@ -65,6 +72,7 @@ json run_octant(const SphereProblem& problem, const OctantChoice& choice, json p
     load["hertz_contact_radius"] = guess.contact_radius;
     load["hertz_peak_pressure"] = guess.peak_pressure;
     load["contact"] = {{"r", array_of(solution.r)}, {"pressure", array_of(solution.pressure)}};
+    load["profile"] = profile_of(solution.profile);
     document["loads"].push_back(load);
     if (!choice.fields.empty()) {
       body.write(choice.fields, number++);
@@ -81,19 +89,23 @@ json run_octant(const CylinderProblem& problem, const OctantChoice& choice, json
   shape.height = problem.height;
   shape.refinements = choice.refinements;
   OctantBody body(shape, problem.discretisation, choice.multigrid);
-  // Small strain: one solution, scaled.
-  const OctantSolution unit = body.solve_held(problem.material, problem.height, problem.ends == Ends::bonded);
+  // Small strain: one solution, that of the last load, scaled.
+  const double last = problem.strains.back();
+  const OctantSolution solution =
+      body.solve_held(problem.material, last * problem.height, problem.ends == Ends::bonded);
+  const double radial = solution.profile.front().u_r / problem.radius;
   for (const double strain : problem.strains) {
-    json load = common(unit);
+    json load = common(solution);
     load["strain"] = strain;
-    load["force"] = strain * unit.force;
-    load["apparent_modulus"] = unit.force / (std::numbers::pi * problem.radius * problem.radius);
-    load["midheight_poisson"] = unit.profile.front().u_r / problem.radius;
-    load["midheight_poisson_local"] = -unit.profile.front().u_r / problem.radius / local_axial_strain(unit.profile);
+    load["profile"] = profile_of(scaled(solution.profile, strain / last));
+    load["force"] = strain / last * solution.force;
+    load["apparent_modulus"] = solution.force / (last * std::numbers::pi * problem.radius * problem.radius);
+    load["midheight_poisson"] = radial / last;
+    load["midheight_poisson_local"] = -radial / local_axial_strain(solution.profile);
     document["loads"].push_back(load);
   }
   if (!choice.fields.empty()) {
-    body.write(choice.fields, 0);
+    body.write(choice.fields, unsigned(problem.strains.size() - 1));
   }
   return document;
 }
