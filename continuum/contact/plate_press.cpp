@@ -63,7 +63,8 @@ double contact_edge(const Eigen::VectorXd& r, const PressState& state, const Int
     return sign_change(r, state.overlap, last);
   }
   // The two outermost pressed vertices carry the error of the broken element.
-  return extrapolated_edge(pressed_points(r, state, last), 1.5 * (r[last] - r[std::max<Eigen::Index>(last - 1, 0)]));
+  const double spacing = r[last] - r[std::max<Eigen::Index>(last - 1, 0)];
+  return extrapolated_edge(pressed_points(r, state, last), 1.5 * spacing, 0.6);
 }
 
 double central_pressure(const Eigen::VectorXd& r, const PressState& state, double edge) {

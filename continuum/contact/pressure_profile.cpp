@@ -36,14 +36,14 @@ struct Samples {
 
 } // namespace
 
-double extrapolated_edge(const std::vector<ProfilePoint>& points, double margin) {
+double extrapolated_edge(const std::vector<ProfilePoint>& points, double margin, double innermost) {
   if (points.empty()) {
     return 0;
   }
   const double last = points.back().r;
   Samples samples;
   for (const auto& [r, pressure, weight] : points) {
-    if (r > 0.6 * last && r < last - margin) {
+    if (r >= innermost * last && r < last - margin) {
       samples.add(r * r, pressure * pressure, weight);
     }
   }
