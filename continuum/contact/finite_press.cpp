@@ -244,9 +244,11 @@ void FinitePress::give_up(const std::string& where) {
   const Ellipticity last = ellipticity(body_, law_, state_.displacement);
   const double unloaded = lowest_stiffness(Eigen::VectorXd::Zero(body_.n_unknowns()));
   const double left = lowest_stiffness(state_.displacement) / unloaded;
-  const char* reason = !(last.lowest > 0) ? "the law has lost ellipticity"
-                       : left < 0.2       ? "the body is at its limit load: there is no equilibrium near by beyond it"
-                                          : "the reason is not known; try smaller loads";
+  // At rest it is the lower of the two wave moduli.
+  const double at_rest = law_.lowest_acoustic(Gradient::Zero());
+  const char* reason = last.lowest < 0.7 * at_rest ? "the law loses ellipticity here"
+                       : left < 0.2 ? "the body is at its limit load: there is no equilibrium near by beyond it"
+                                    : "the reason is not known; try smaller loads";
   throw NotSettled(
       fmt::format("Newton's method did not settle{} in load steps down to 1/{} of the load: residual {:.3e} (goal "
                   "{:.3e}). At the last settled state the lowest eigenvalue of the stiffness is {:.3g} of the unloaded "

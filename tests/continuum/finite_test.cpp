@@ -155,6 +155,29 @@ TEST(FiniteCylinder, TendsToTheLinearOneAtFirstOrder) {
   }
 }
 
+TEST(FiniteSphere, PassesTheLoadAtWhichThePlateAloneHoldsTheAuxeticBody) {
+  // Beyond an approach of 0.29 the body is unstable under its pressures; with the plate's constraint it is not.
+  SphereProblem problem;
+  problem.material = {1, -0.5};
+  problem.finite_law = std::make_shared<NeoHookean>(problem.material);
+  problem.elements_across = 16;
+  problem.approaches = {0.1, 0.25, 0.32};
+  const SphereLoad load = solve(problem).back();
+  EXPECT_GE(load.pressure.minCoeff(), 0);
+  EXPECT_LT(load.overlap.maxCoeff(), 1e-10);
+  EXPECT_LT(load.pressure.cwiseProduct(load.overlap).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_GT(load.ellipticity, 0);
+  // The law itself loses ellipticity below the plate's centre at about 0.4.
+  problem.approaches = {0.1, 0.25, 0.32, 0.42};
+  std::string message;
+  try {
+    solve(problem);
+  } catch (const NotSettled& error) {
+    message = error.what();
+  }
+  EXPECT_NE(message.find("loses ellipticity"), std::string::npos) << message;
+}
+
 TEST(FiniteSphere, TendsToTheLinearOneAtFirstOrder) {
   for (const double nu : {-0.5, 0.25}) {
     SphereProblem problem;
