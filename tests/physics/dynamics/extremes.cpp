@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs at the edge of what makes sense: each ends with finite numbers, or is stopped by a message that names the step.
+#include "bpm/dynamics/simulation.h"
+#include "bpm/dynamics/stable_step.h"
+#include "tests/support/small_packings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+namespace boba::test {
+namespace {
+
+struct Outcome {
+  std::optional<std::string> blow_up;
+  Snapshot end;
+  Totals totals;
+};
+
+/// Runs the stages; everything must stay finite, with bonds as long as grains can have, or be stopped by a message.
+Outcome run(Packing packing, const std::vector<Stage>& stages, double dt = 0.1) {
+  const Topology topology = packing.topology(true);
+  Simulation simulation(std::move(packing), {}, {.dt = dt, .threads = 1});
+  Outcome outcome;
+  try {
+    for (std::size_t k = 0; k < stages.size(); ++k) {
+      simulation.run(static_cast<int>(k), stages[k], {});
+    }
+  } catch (const BlowUp& error) {
+    outcome.blow_up = error.what();
+    for (const char* word : {"step", "dt"}) {
+      EXPECT_NE(outcome.blow_up->find(word), std::string::npos) << *outcome.blow_up;
+    }
+    return outcome;
+  }
+  outcome.end = simulation.snapshot({.velocity = true});
+  outcome.totals = simulation.totals();
+  EXPECT_TRUE(std::isfinite(outcome.totals.pressure) && std::isfinite(outcome.totals.kinetic_energy));
+  for (const Vector3& x : outcome.end.position) {
+    EXPECT_TRUE(x.allFinite());
+  }
+  for (const Topology::Pair& bond : topology.bonds) {
+    EXPECT_LT((outcome.end.position[bond.i] - outcome.end.position[bond.j]).norm(), 3.0 * bond.r0);
+  }
+  return outcome;
+}
+
+Packing grains_in(double edge, double alpha, int n = 9, double speed = 0.0) {
+  return small_packing({.box = Box({0, 0, 0}, {edge, edge, edge}), .n_grains = n, .alpha = alpha, .jitter = 0.0, .speed = speed});
+}
+
+CompressStage compression(double pressure) {
+  return {.barostat = {.pressure = pressure}, .rate = 2e-3, .pressure_tolerance = 0.02, .kinetic_tolerance = 0.2, .max_time = 5e4};
+}
+
+TEST(Extremes, CompressionUntilNoGapIsLeft) {
+  for (const auto& [alpha, pressure] : {std::pair(-0.8, 0.3), std::pair(2.0, 2.0), std::pair(12.0, 5.0)}) { // P~ of about 1
+    const Outcome outcome = run(grains_in(14.0, alpha), {compression(pressure)});
+    ASSERT_FALSE(outcome.blow_up) << alpha << ": " << *outcome.blow_up;
+    EXPECT_NEAR(outcome.totals.pressure, pressure, 0.03 * pressure) << alpha;
+  }
+}
+
+TEST(Extremes, FastShearWithManyFlips) {
+  for (const Remap remap : {Remap::positions, Remap::velocities}) {
+    const Outcome outcome = run(grains_in(12.0, 2.0), {compression(0.1), ShearStage{.rate = 1e-2, .strain = 8.0, .remap = remap,
+                                                                                 .barostat = Barostat{.pressure = 0.1, .gain = 0.05}}});
+    ASSERT_FALSE(outcome.blow_up) << *outcome.blow_up;
+    EXPECT_LE(std::abs(outcome.end.box.xy()), 0.5 * outcome.end.box.lengths()[0] * (1.0 + 1e-9));
+    EXPECT_NEAR(outcome.end.strain, 8.0, 1e-9);
+  }
+}
+
+TEST(Extremes, NextToTheLimitOfRigidity) {
+  const Outcome outcome = run(grains_in(14.0, -1.0), {compression(0.02), HoldStage{.time = 100.0}});
+  EXPECT_FALSE(outcome.blow_up) << *outcome.blow_up;
+}
+
+TEST(Extremes, ThirtyPercentOverlapAtTheStart) {
+  Packing packing = small_packing({.box = Box({0, 0, 0}, {16, 16, 16}), .n_grains = 9, .jitter = 0.0, .speed = 0.0, .least_distance = 0.7 * 5.0});
+  const Outcome outcome = run(std::move(packing), {HoldStage{.time = 300.0}});
+  if (!outcome.blow_up) {
+    EXPECT_LT(outcome.totals.kinetic_energy, 1.0);
+  }
+}
+
+TEST(Extremes, GrainsThroughEachOtherAtHighSpeed) {
+  for (const double speed : {0.5, 2.0, 8.0}) {
+    Packing packing = small_packing({.box = Box({0, 0, 0}, {30, 30, 30}), .n_grains = 2, .jitter = 0.0, .speed = 0.0, .least_distance = 8.0});
+    const std::int64_t n = packing.first_nodes()[1];
+    Vector3 first = Vector3::Zero(), second = Vector3::Zero();
+    for (std::int64_t i = 0; i < n; ++i) {
+      first += packing.position[i] / static_cast<double>(n);
+      second += packing.position[n + i] / static_cast<double>(n);
+    }
+    const Vector3 towards = packing.box.minimum_image(second - first).normalized();
+    for (std::int64_t i = 0; i < n; ++i) {
+      packing.velocity[i] = speed * towards;
+      packing.velocity[n + i] = -speed * towards;
+    }
+    const Outcome outcome = run(std::move(packing), {HoldStage{.time = 60.0}});
+    EXPECT_TRUE(speed < 5.0 || outcome.blow_up) << "half a diameter a step must not pass in silence";
+  }
+}
+
+TEST(Extremes, WallsDrivenThroughAGrain) {
+  for (const double velocity : {2e-3, 0.05}) {
+    Packing packing = small_packing({.box = Box({0, 0, 0}, {40, 40, 40}, {0, 0, 0}, {false, false, false}), .n_grains = 1, .jitter = 0.0, .speed = 0.0});
+    run(std::move(packing), {PressStage{.velocity = velocity, .strain = 0.85}});
+  }
+}
+
+TEST(Extremes, OneAndTwoGrainsInABoxBarelyLarger) {
+  for (const int n : {1, 2}) {
+    Packing packing = small_packing({.box = Box({0, 0, 0}, {5.2 * n, 5.2, 5.2}), .n_grains = n, .jitter = 0.0, .speed = 0.0, .least_distance = 5.0});
+    const Outcome outcome = run(std::move(packing), {compression(0.1), ShearStage{.rate = 2e-3, .strain = 3.0, .barostat = Barostat{.pressure = 0.1, .gain = 0.05}}});
+    ASSERT_FALSE(outcome.blow_up) << *outcome.blow_up;
+    EXPECT_GT(outcome.totals.pressure, 0.0);
+  }
+}
+
+/// Beyond the stable step a run stops within 100 steps, and says that dt is the likely cause.
+TEST(Extremes, AStepBeyondTheLimitIsFoundSoon) {
+  for (const double alpha : {-0.8, 0.0, 2.0, 5.0, 12.0, 20.0}) {
+    Packing packing = small_packing({.box = Box({0, 0, 0}, {40, 40, 40}), .n_grains = 1, .alpha = alpha, .jitter = 0.01, .speed = 0.01});
+    for (double dt = 0.1; dt < 4.0; dt *= 1.15) { // the first step that grows, by experiment
+      const Outcome outcome = run(packing, {HoldStage{.time = 100.0 * dt}}, dt);
+      if (outcome.blow_up) {
+        EXPECT_GT(dt, 0.11) << "alpha " << alpha << ": the default step has no margin";
+        break;
+      }
+      ASSERT_LT(dt, 3.0) << "alpha " << alpha << " never blows up";
+    }
+  }
+}
+
+} // namespace
+} // namespace boba::test
