@@ -23,7 +23,10 @@ struct CompareOptions {
 };
 
 Press press_from(const std::string& word) {
-  return word == "mirror" ? Press::mirror : word == "twin" ? Press::twin : word == "images" ? Press::images : Press::walls;
+  return word == "mirror"   ? Press::mirror
+         : word == "twin"   ? Press::twin
+         : word == "images" ? Press::images
+                            : Press::walls;
 }
 
 ElasticConstants constants_of(double young, double poisson) {
@@ -47,18 +50,23 @@ void consult_table(CompareOptions& options) {
 }
 
 void common(CLI::App& command, CompareOptions& options) {
-  command.add_option("--alpha", options.settings.alphas, "Many-body coefficients, k d, separated by commas")->delimiter(',');
+  command.add_option("--alpha", options.settings.alphas, "Many-body coefficients, k d, separated by commas")
+      ->delimiter(',');
   command.add_option("--poisson", options.poissons, "Poisson ratios instead: the table's alphas")->delimiter(',');
-  command.add_option("--calibration", options.calibration, "fresh: from the bulk itself; table: the installed table's E and nu")
+  command
+      .add_option("--calibration", options.calibration,
+                  "fresh: from the bulk itself; table: the installed table's E and nu")
       ->check(CLI::IsMember({"fresh", "table"}))
       ->capture_default_str();
   command.add_option("--bulk-nodes", options.bulk_nodes, "Nodes of the periodic bulk that bodies are cut from")
       ->capture_default_str();
-  command.add_option("--samples", options.settings.samples, "Bodies, each in a random orientation and place of the bulk")
+  command
+      .add_option("--samples", options.settings.samples, "Bodies, each in a random orientation and place of the bulk")
       ->capture_default_str();
   command.add_option("--seed", options.settings.seed, "Seed of the bulk and of the first body")->capture_default_str();
   command.add_flag("--fields", options.settings.fields, "Compare the fields of the last load too");
-  command.add_option("--output", options.output, "Directory for comparison.json, comparison.csv and pictures")->required();
+  command.add_option("--output", options.output, "Directory for comparison.json, comparison.csv and pictures")
+      ->required();
   command.add_flag("--force", options.force, "Write into a directory that holds files");
 }
 
@@ -104,17 +112,24 @@ Command add_compare(CLI::App& app) {
   cylinder->settings.loads = {0.001, 0.01, 0.05, 0.1, 0.15, 0.2};
   cylinder->settings.samples = 3;
   sphere->settings.loads = {0.005, 0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2, 0.25, 0.3};
-  CLI::App* command = app.add_subcommand("compare", "Particles against the continuum: a cylinder or a sphere")->require_subcommand(1);
+  CLI::App* command =
+      app.add_subcommand("compare", "Particles against the continuum: a cylinder or a sphere")->require_subcommand(1);
   CLI::App* cylinders = command->add_subcommand("cylinder", "Cylinders squeezed between held and between sliding ends");
   common(*cylinders, *cylinder);
   cylinders->add_option("--radius", cylinder->settings.radius, "Radius of the cut, d")->capture_default_str();
-  cylinders->add_option("--height", cylinder->settings.height, "Height, with end slabs of 2 d each, d")->capture_default_str();
+  cylinders->add_option("--height", cylinder->settings.height, "Height, with end slabs of 2 d each, d")
+      ->capture_default_str();
   cylinders->add_option("--strain", cylinder->settings.loads, "Strains, rising, separated by commas")->delimiter(',');
-  CLI::App* spheres = command->add_subcommand("sphere", "Spheres pressed between walls, against a grain, against their images");
+  CLI::App* spheres =
+      command->add_subcommand("sphere", "Spheres pressed between walls, against a grain, against their images");
   common(*spheres, *sphere);
   spheres->add_option("--nodes", sphere->settings.n_nodes, "Nodes of the sphere")->capture_default_str();
-  spheres->add_option("--surface", sphere->surface, "cut or wall")->check(CLI::IsMember({"cut", "wall"}))->capture_default_str();
-  spheres->add_option("--approach", sphere->settings.loads, "Approaches of one contact over R, rising, separated by commas")
+  spheres->add_option("--surface", sphere->surface, "cut or wall")
+      ->check(CLI::IsMember({"cut", "wall"}))
+      ->capture_default_str();
+  spheres
+      ->add_option("--approach", sphere->settings.loads,
+                   "Approaches of one contact over R, rising, separated by commas")
       ->delimiter(',');
   spheres->add_option("--press", sphere->presses, "walls, mirror, twin, images; several separated by commas")
       ->delimiter(',')

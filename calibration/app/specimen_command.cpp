@@ -82,7 +82,8 @@ void print(const Row& row, const ElasticConstants& solid) {
   const double young = solid.young();
   const auto percent = [&](const Estimate& value) { return 100.0 * (value.mean / young - 1.0); };
   const double error = std::isnan(row.young().error) ? 0.0 : 100.0 * row.young().error / young;
-  fmt::print("{:>8} {:>5g} {:>5g} {:>8} {:>8.4f} {:>8.4f} {:>9.3f} {:>+9.2f} {:>5.2f} {:>+9.2f} {:>+9.2f} {:>+9.2f} {:>8.1f}\n",
+  fmt::print("{:>8} {:>5g} {:>5g} {:>8} {:>8.4f} {:>8.4f} {:>9.3f} {:>+9.2f} {:>5.2f} {:>+9.2f} {:>+9.2f} {:>+9.2f} "
+             "{:>8.1f}\n",
              row.how, row.radius, row.height, row.n_nodes, row.poisson().mean, row.young().mean, row.bond_radius().mean,
              percent(row.young()), error, percent(row.density()), percent(row.centres(0.0)), percent(row.centres(0.5)),
              row.seconds);
@@ -95,10 +96,11 @@ std::string csv(const std::vector<Row>& rows, const ElasticConstants& solid) {
     const auto error = [](const Estimate& value) {
       return std::isnan(value.error) ? std::string() : fmt::format("{:.4g}", value.error);
     };
-    text += fmt::format("{},{},{},{},{},{:.6g},{},{:.6g},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.3g}\n", row.how,
-                        row.radius, row.height, row.n_nodes, row.samples.size(), row.poisson().mean, error(row.poisson()),
-                        row.young().mean, error(row.young()), row.density().mean, row.centres(0.0).mean,
-                        row.centres(0.5).mean, row.bond_radius().mean, solid.poisson(), solid.young(), row.seconds);
+    text +=
+        fmt::format("{},{},{},{},{},{:.6g},{},{:.6g},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.3g}\n", row.how,
+                    row.radius, row.height, row.n_nodes, row.samples.size(), row.poisson().mean, error(row.poisson()),
+                    row.young().mean, error(row.young()), row.density().mean, row.centres(0.0).mean,
+                    row.centres(0.5).mean, row.bond_radius().mean, solid.poisson(), solid.young(), row.seconds);
   }
   return text;
 }
@@ -134,8 +136,8 @@ int specimen(const SpecimenOptions& options) {
       isotropic_part(relaxed_stiffness(LinearNetwork(bulk), {options.test.alpha}).front().stiffness);
   fmt::print("network: nu = {:.4f}, E = {:.4f} k/d (the bulk of {} nodes); E in % of it, by four areas\n"
              "{:>8} {:>5} {:>5} {:>8} {:>8} {:>8} {:>9} {:>9} {:>5} {:>9} {:>9} {:>9} {:>8}\n",
-             solid.poisson(), solid.young(), bulk.n_nodes(), "", "R/d", "H/d", "nodes", "nu", "E d/k", "R_bond/d", "by bonds",
-             "+-", "by nodes", "centres", "+ d/2", "CPU s");
+             solid.poisson(), solid.young(), bulk.n_nodes(), "", "R/d", "H/d", "nodes", "nu", "E d/k", "R_bond/d",
+             "by bonds", "+-", "by nodes", "centres", "+ d/2", "CPU s");
   std::vector<Row> rows;
   for (const double radius : options.radii) {
     TemplateSpec spec{.shape = TemplateSpec::Shape::cylinder, .surface = surface_from_string(options.surface)};

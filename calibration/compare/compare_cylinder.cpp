@@ -74,13 +74,15 @@ void add_rows(json& document, const Solid& solid, const char* setup, const Squee
   for (std::size_t l = 0; l < squeezed.states.front().size(); ++l) {
     const double strain = squeezed.states.front()[l].strain;
     json& rows = document["rows"];
-    rows.push_back(comparison_row({solid, setup, strain, "force"}, samples(l, [](const auto& s, double) { return s.force; }),
-                                  models(l, "force")));
-    rows.push_back(comparison_row({solid, setup, strain, "apparent_modulus"},
-                                  samples(l, [](const auto& s, double r) { return s.force / (M_PI * r * r * s.strain); }),
-                                  models(l, "apparent_modulus")));
+    rows.push_back(comparison_row({solid, setup, strain, "force"},
+                                  samples(l, [](const auto& s, double) { return s.force; }), models(l, "force")));
+    rows.push_back(
+        comparison_row({solid, setup, strain, "apparent_modulus"},
+                       samples(l, [](const auto& s, double r) { return s.force / (M_PI * r * r * s.strain); }),
+                       models(l, "apparent_modulus")));
     rows.push_back(comparison_row({solid, setup, strain, "poisson"},
-                                  samples(l, [](const auto& s, double) { return s.poisson; }), models(l, "midheight_poisson")));
+                                  samples(l, [](const auto& s, double) { return s.poisson; }),
+                                  models(l, "midheight_poisson")));
     // The profile: mean over samples, as error over the largest displacement.
     std::vector<double> z = squeezed.states.front()[l].z, u_r(z.size(), 0.0);
     for (const auto& sample : squeezed.states) {

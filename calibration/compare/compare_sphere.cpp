@@ -20,20 +20,24 @@ constexpr double slab_pressure = 0.1; // of E / (1 - nu^2): the mean pressure of
 
 const char* word(Press press) {
   switch (press) {
-  case Press::walls: return "walls";
-  case Press::mirror: return "mirror";
-  case Press::twin: return "twin";
-  case Press::images: return "images";
+  case Press::walls:
+    return "walls";
+  case Press::mirror:
+    return "mirror";
+  case Press::twin:
+    return "twin";
+  case Press::images:
+    return "images";
   }
   return "";
 }
 
 /// The surface that the continuum gets, by rule, and the plain one of node springs for comparison.
 struct Surface {
-  double body = 0.0;              ///< radius of the solid, by its bonds
-  double radius = 0.0;            ///< where plate and layer meet
-  double c1 = 0.0, c3 = 0.0;      ///< the layer between them
-  SurfaceRule springs;            ///< the simple picture: one spring a node of the outermost layer
+  double body = 0.0;         ///< radius of the solid, by its bonds
+  double radius = 0.0;       ///< where plate and layer meet
+  double c1 = 0.0, c3 = 0.0; ///< the layer between them
+  SurfaceRule springs;       ///< the simple picture: one spring a node of the outermost layer
   json report;
 };
 
@@ -74,8 +78,8 @@ std::vector<SlabState> slabs_of(const ComparisonSettings& settings, const Solid&
   return states;
 }
 
-/// The solid ends where its bonds end. The layer on it is, for a cut grain, that of a flat cut through the bulk; for a walled
-/// grain its outermost nodes, a spring each.
+/// The solid ends where its bonds end. The layer on it is, for a cut grain, that of a flat cut through the bulk; for a
+/// walled grain its outermost nodes, a spring each.
 Surface surface_of(const ComparisonSettings& settings, const Solid& solid, const GrainTemplate& grain) {
   const BulkDensity density = bulk_density(settings.bulk);
   Surface surface{.body = bond_radius(grain, density), .springs = surface_rule(grain, density.nodes)};
@@ -109,7 +113,8 @@ Surface surface_of(const ComparisonSettings& settings, const Solid& solid, const
 double contact_radius(const json& contact) {
   double force = 0.0, moment = 0.0;
   for (std::size_t n = 1; n < contact["r"].size(); ++n) {
-    const double r0 = contact["r"][n - 1], r1 = contact["r"][n], p0 = contact["pressure"][n - 1], p1 = contact["pressure"][n];
+    const double r0 = contact["r"][n - 1], r1 = contact["r"][n], p0 = contact["pressure"][n - 1],
+                 p1 = contact["pressure"][n];
     const double r = 0.5 * (r0 + r1), p = 0.5 * (p0 + p1), width = r1 - r0;
     force += p * r * width;
     moment += p * r * r * r * width;
@@ -120,8 +125,8 @@ double contact_radius(const json& contact) {
 /// The models: what is changed from one to the next tells the reasons for a difference apart.
 json run_models(const ComparisonSettings& settings, const Solid& solid, const Surface& surface) {
   json results;
-  // `plate`: distance from the centre at which the plate meets the layer. A continuum's layer has no thickness, so its plate is
-  // moved in by what the layer stands out.
+  // `plate`: distance from the centre at which the plate meets the layer. A continuum's layer has no thickness, so its
+  // plate is moved in by what the layer stands out.
   const auto run = [&](const char* name, double radius, double plate, double c1, double c3, const char* law) {
     ContinuumModel model{.name = fmt::format("{}_{:g}", name, solid.alpha),
                          .radius = radius,
@@ -136,12 +141,14 @@ json run_models(const ComparisonSettings& settings, const Solid& solid, const Su
     }
     std::vector<double> approaches;
     std::size_t skipped = 0;
-    for (const double load : settings.loads) { // plates at the same places for every model; a smaller reach meets them later
+    for (const double load :
+         settings.loads) { // plates at the same places for every model; a smaller reach meets them later
       const double approach = 2.0 * (plate - surface.radius * (1.0 - load));
       approach > 0.0 ? approaches.push_back(approach) : static_cast<void>(++skipped);
     }
     json loads = run_continuum("sphere", model, "approach", approaches, settings.folder);
-    if (model.law == "foam" && loads.size() < approaches.size()) { // two terms may run away beyond the strains they were fitted to
+    if (model.law == "foam" &&
+        loads.size() < approaches.size()) { // two terms may run away beyond the strains they were fitted to
       model.foam_terms = 1;
       json simpler = run_continuum("sphere", model, "approach", approaches, settings.folder);
       if (simpler.size() > loads.size()) {
@@ -199,7 +206,8 @@ json profile_report(const std::vector<std::vector<SphereState>>& states, std::si
       axial[b] += sample[load].profile[b].axial / states.size();
     }
   }
-  json report = {{"angle", angle}, {"u_r", radial}, {"u_z", axial}, {"continuum", json::object()}, {"misfit", json::object()}};
+  json report = {
+      {"angle", angle}, {"u_r", radial}, {"u_z", axial}, {"continuum", json::object()}, {"misfit", json::object()}};
   for (const auto& [model, loads] : models.items()) {
     if (load >= loads.size() || loads[load].is_null()) {
       continue;
@@ -226,7 +234,8 @@ json profile_report(const std::vector<std::vector<SphereState>>& states, std::si
 }
 
 void add_rows(json& document, const Solid& solid, const Surface& surface, Press press,
-              const std::vector<std::vector<SphereState>>& states, const std::vector<double>& fractions, const json& models) {
+              const std::vector<std::vector<SphereState>>& states, const std::vector<double>& fractions,
+              const json& models) {
   const auto samples = [&](auto&& member) {
     std::vector<double> values;
     for (const auto& sample : states) {
@@ -239,8 +248,10 @@ void add_rows(json& document, const Solid& solid, const Surface& surface, Press 
   for (std::size_t l = 0; l < fractions.size(); ++l) {
     const double approach = fractions[l] * surface.radius;
     const double hertz = 4.0 / 3.0 * modulus * std::sqrt(surface.body * approach) * approach;
-    const auto row = [&](const char* quantity, const std::vector<double>& values, const json& continuum, const json& reference) {
-      document["rows"].push_back(comparison_row({solid, word(press), fractions[l], quantity}, values, continuum, reference));
+    const auto row = [&](const char* quantity, const std::vector<double>& values, const json& continuum,
+                         const json& reference) {
+      document["rows"].push_back(
+          comparison_row({solid, word(press), fractions[l], quantity}, values, continuum, reference));
     };
     row("force", samples([&](const auto& s) { return s[l].force; }),
         of_models(models, l, [](const json& load) { return load["force"]; }), hertz);
@@ -316,7 +327,8 @@ json compare_sphere(const ComparisonSettings& settings) {
       std::vector<std::vector<SphereState>> states;
       for (const GrainTemplate& grain : grains) {
         if (settings.log) {
-          settings.log(fmt::format("alpha = {}: sphere {} of {}, {}", alpha, states.size() + 1, grains.size(), word(press)));
+          settings.log(
+              fmt::format("alpha = {}: sphere {} of {}, {}", alpha, states.size() + 1, grains.size(), word(press)));
         }
         states.push_back(press_sphere(grain, alpha, place, approaches, press));
       }

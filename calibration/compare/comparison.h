@@ -16,16 +16,16 @@ namespace boba::calibration {
 
 /// What to compare, and how finely.
 struct ComparisonSettings {
-  std::vector<double> alphas;  ///< k d
-  GrainTemplate bulk;          ///< periodic box: calibrated, and bodies are cut from it
-  int n_nodes = 5137;          ///< of a sphere
+  std::vector<double> alphas;         ///< k d
+  GrainTemplate bulk;                 ///< periodic box: calibrated, and bodies are cut from it
+  int n_nodes = 5137;                 ///< of a sphere
   double radius = 7.0, height = 27.0; ///< of a cylinder, slabs of 2 d included, d
   TemplateSpec::Surface surface = TemplateSpec::Surface::cut;
-  int samples = 2;             ///< bodies, each in a random orientation (and place of the bulk)
+  int samples = 2; ///< bodies, each in a random orientation (and place of the bulk)
   std::uint64_t seed = 1;
-  std::vector<double> loads;   ///< approach / R of one contact, or strains; rising
+  std::vector<double> loads; ///< approach / R of one contact, or strains; rising
   std::vector<Press> presses = {Press::walls};
-  bool fields = false;         ///< write node fields and the continuum's for the last load
+  bool fields = false;          ///< write node fields and the continuum's for the last load
   std::filesystem::path folder; ///< the continuum's results go here
   /// Elastic constants known already (a table); else the bulk is calibrated afresh.
   std::function<std::optional<ElasticConstants>(double alpha)> known;
@@ -38,7 +38,8 @@ struct ComparisonSettings {
 nlohmann::json compare_sphere(const ComparisonSettings& settings);
 nlohmann::json compare_cylinder(const ComparisonSettings& settings);
 
-/// One line a row and model: alpha,poisson,setup,load,quantity,particles,particles_error,model,continuum,hertz,difference.
+/// One line a row and model:
+/// alpha,poisson,setup,load,quantity,particles,particles_error,model,continuum,hertz,difference.
 std::string comparison_csv(const nlohmann::json& document);
 /// The table for the terminal, against the document's own best model.
 std::string comparison_text(const nlohmann::json& document);

@@ -82,7 +82,9 @@ double interpolated(std::vector<std::pair<double, double>> points, double x) {
 
 std::string comparison_csv(const json& document) {
   std::string text = "alpha,poisson,setup,load,quantity,particles,particles_error,model,continuum,hertz,difference\n";
-  const auto number = [](const json& value) { return value.is_number() ? fmt::format("{:.8g}", value.get<double>()) : ""; };
+  const auto number = [](const json& value) {
+    return value.is_number() ? fmt::format("{:.8g}", value.get<double>()) : "";
+  };
   for (const json& row : document.at("rows")) {
     for (const auto& [model, value] : row.at("continuum").items()) {
       text += fmt::format("{},{},{},{},{},{},{},{},{},{},{:.6g}\n", number(row["alpha"]), number(row["poisson"]),
@@ -97,18 +99,21 @@ std::string comparison_csv(const json& document) {
 
 std::string comparison_text(const json& document) {
   const std::string best = document.at("best_model");
-  std::string text = fmt::format("{:>6} {:>7} {:>8} {:>6} {:>16} {:>11} {:>9} {:>11} {:>11} {:>9}\n", "alpha", "nu", "setup", "load",
-                                 "quantity", "particles", "+-", "continuum", "Hertz", "diff.");
+  std::string text = fmt::format("{:>6} {:>7} {:>8} {:>6} {:>16} {:>11} {:>9} {:>11} {:>11} {:>9}\n", "alpha", "nu",
+                                 "setup", "load", "quantity", "particles", "+-", "continuum", "Hertz", "diff.");
   for (const json& row : document.at("rows")) {
     const json& models = row.at("continuum");
     const bool has = models.contains(best);
     const double particles = row["particles"], continuum = has ? models[best].get<double>() : NAN;
-    const std::string difference =
-        !has ? "" : std::abs(continuum) > 1e-12 ? fmt::format("{:+.1f} %", 100.0 * (particles / continuum - 1.0)) : "";
-    text += fmt::format("{:>6g} {:>7.3f} {:>8} {:>6g} {:>16} {:>11.5g} {:>9} {:>11} {:>11} {:>9}\n", row["alpha"].get<double>(),
-                        row["poisson"].get<double>(), row["setup"].get<std::string>(), row["load"].get<double>(),
-                        row["quantity"].get<std::string>(), particles,
-                        row["particles_error"].is_number() ? fmt::format("{:.2g}", row["particles_error"].get<double>()) : "",
+    const std::string difference = !has ? ""
+                                   : std::abs(continuum) > 1e-12
+                                       ? fmt::format("{:+.1f} %", 100.0 * (particles / continuum - 1.0))
+                                       : "";
+    text += fmt::format("{:>6g} {:>7.3f} {:>8} {:>6g} {:>16} {:>11.5g} {:>9} {:>11} {:>11} {:>9}\n",
+                        row["alpha"].get<double>(), row["poisson"].get<double>(), row["setup"].get<std::string>(),
+                        row["load"].get<double>(), row["quantity"].get<std::string>(), particles,
+                        row["particles_error"].is_number() ? fmt::format("{:.2g}", row["particles_error"].get<double>())
+                                                           : "",
                         has ? fmt::format("{:.5g}", continuum) : "",
                         row.contains("hertz") ? fmt::format("{:.5g}", row["hertz"].get<double>()) : "", difference);
   }
@@ -121,8 +126,8 @@ std::string node_fields_csv(const std::vector<Eigen::Vector3d>& reference, const
   for (std::size_t n = 0; n < reference.size(); ++n) {
     const Eigen::Vector3d &x = reference[n], u = position[n] - x;
     const Eigen::Matrix3d& w = virial[n];
-    text += fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", x[0], x[1],
-                        x[2], u[0], u[1], u[2], w(0, 0), w(1, 1), w(2, 2), w(1, 2), w(0, 2), w(0, 1));
+    text += fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", x[0],
+                        x[1], x[2], u[0], u[1], u[2], w(0, 0), w(1, 1), w(2, 2), w(1, 2), w(0, 2), w(0, 1));
   }
   return text;
 }

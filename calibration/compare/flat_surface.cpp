@@ -13,11 +13,12 @@ namespace boba::calibration {
 
 namespace {
 
-constexpr double step = 0.15;         // d, of the gap between two relaxed states
-constexpr double bulk_step = 0.01;    // of the uncut box's stretch
+constexpr double step = 0.15;           // d, of the gap between two relaxed states
+constexpr double bulk_step = 0.01;      // of the uncut box's stretch
 constexpr double smallest_share = 0.02; // of the largest pressure; below, single nodes carry the load
 constexpr double tolerance = 1e-8;
-constexpr double softest_start = 0.2; // c1 over p/g at the largest overlap: a layer without a slope at rest has no tangent
+constexpr double softest_start =
+    0.2; // c1 over p/g at the largest overlap: a layer without a slope at rest has no tangent
 
 /// The box without the bonds that cross its faces across z, far from its images there.
 GrainTemplate slab_of(const GrainTemplate& box) {
@@ -74,7 +75,8 @@ std::vector<SlabState> press_slab(const GrainTemplate& box, double alpha, double
       break;
     }
     if (gap < 0.5 * box.period->z()) {
-      throw std::runtime_error(fmt::format("a slab of {:.3g} d does not carry {} k/d", box.period->z(), largest_pressure));
+      throw std::runtime_error(
+          fmt::format("a slab of {:.3g} d does not carry {} k/d", box.period->z(), largest_pressure));
     }
   }
   add_bulk_stretch(box, alpha, states);

@@ -34,13 +34,15 @@ double hold_depth(const GrainTemplate& cylinder, double z0, double side) {
 
 } // namespace
 
-CylinderPress::CylinderPress(const GrainTemplate& cylinder, const BulkDensity& bulk, double slab) : cylinder_(cylinder) {
+CylinderPress::CylinderPress(const GrainTemplate& cylinder, const BulkDensity& bulk, double slab)
+    : cylinder_(cylinder) {
   const auto [bottom, top] = std::minmax_element(cylinder.position.begin(), cylinder.position.end(),
                                                  [](const Vector3& a, const Vector3& b) { return a.z() < b.z(); });
   low_ = bottom->z() + slab;
   high_ = top->z() - slab;
   if (!(slab > 0.0 && high_ - low_ > 2.0)) {
-    throw std::invalid_argument(fmt::format("slab = {} d leaves too little of the height {:.4g} d", slab, top->z() - bottom->z()));
+    throw std::invalid_argument(
+        fmt::format("slab = {} d leaves too little of the height {:.4g} d", slab, top->z() - bottom->z()));
   }
   for (int n = 0; n < cylinder.n_nodes(); ++n) {
     if (cylinder.position[n].z() <= low_) {
@@ -102,7 +104,8 @@ CylinderState CylinderPress::measure(const std::vector<Vector3>& position, doubl
   return state;
 }
 
-std::vector<CylinderState> CylinderPress::squeeze(double alpha, CylinderEnds ends, const std::vector<double>& strains) const {
+std::vector<CylinderState> CylinderPress::squeeze(double alpha, CylinderEnds ends,
+                                                  const std::vector<double>& strains) const {
   NonlinearNetwork network(cylinder_, alpha);
   const NonlinearNetwork::Held held = ends == CylinderEnds::bonded ? NonlinearNetwork::Held{true, true, true}
                                                                    : NonlinearNetwork::Held{false, false, true};

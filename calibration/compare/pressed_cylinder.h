@@ -16,19 +16,19 @@ enum class CylinderEnds {
 
 /// The continuum body that a cylinder of nodes stands for, fixed by its undeformed bonds.
 ///
-/// Radius: the area by bonds (cylinder.h). Ends: a held end acts from behind the slab's face, at the mean depth of the held ends
-/// of the bonds that cross the face, each weighted by e_z^2, its share in the axial force. Then a uniform strain between the
-/// two planes gives every crossing bond on average the force it has in the bulk.
+/// Radius: the area by bonds (cylinder.h). Ends: a held end acts from behind the slab's face, at the mean depth of the
+/// held ends of the bonds that cross the face, each weighted by e_z^2, its share in the axial force. Then a uniform
+/// strain between the two planes gives every crossing bond on average the force it has in the bulk.
 struct CylinderBody {
   double radius = 0.0; ///< d
   double height = 0.0; ///< d, between the planes at which the ends are held
 };
 
 struct CylinderState {
-  double strain = 0.0;   ///< shortening over `height`
-  double force = 0.0;    ///< k d, compression positive
-  double poisson = 0.0;  ///< radial strain of the side at mid-height over `strain`
-  double seconds = 0.0;  ///< processor time
+  double strain = 0.0;        ///< shortening over `height`
+  double force = 0.0;         ///< k d, compression positive
+  double poisson = 0.0;       ///< radial strain of the side at mid-height over `strain`
+  double seconds = 0.0;       ///< processor time
   std::vector<double> z, u_r; ///< d: the side's radial displacement against |z|, both halves together
   std::vector<Eigen::Vector3d> position;
   std::vector<Eigen::Matrix3d> virial;

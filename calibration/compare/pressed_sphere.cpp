@@ -14,8 +14,8 @@ namespace boba::calibration {
 
 namespace {
 
-constexpr double k3 = 50.0;             // k/d^2, the engine's default
-constexpr double largest_step = 0.1;    // d, of one contact's approach between two relaxed states
+constexpr double k3 = 50.0;              // k/d^2, the engine's default
+constexpr double largest_step = 0.1;     // d, of one contact's approach between two relaxed states
 constexpr double force_tolerance = 1e-8; // k d, root mean square residual
 constexpr int profile_bins = 12;
 
@@ -40,8 +40,8 @@ struct Extent {
   double middle() const { return 0.5 * (low + high); }
 };
 Extent extent(const std::vector<Vector3>& position) {
-  const auto [low, high] = std::minmax_element(position.begin(), position.end(),
-                                               [](const auto& a, const auto& b) { return a.z() < b.z(); });
+  const auto [low, high] =
+      std::minmax_element(position.begin(), position.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
   return {low->z(), high->z()};
 }
 

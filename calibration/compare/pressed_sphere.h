@@ -20,9 +20,9 @@ enum class Press {
 
 /// A surface point's displacement, averaged around the axis and over both halves; of the undeformed position.
 struct SurfacePoint {
-  double angle = 0.0;         ///< from the equator, rad
-  double radial = 0.0;        ///< u_r, d, outward from the axis
-  double axial = 0.0;         ///< u_z, d, on the upper half (negative: towards the equator)
+  double angle = 0.0;  ///< from the equator, rad
+  double radial = 0.0; ///< u_r, d, outward from the axis
+  double axial = 0.0;  ///< u_z, d, on the upper half (negative: towards the equator)
   int n_nodes = 0;
 };
 
@@ -36,12 +36,12 @@ struct SphereState {
   double imbalance = 0.0;      ///< difference of the forces of the two walls over their mean
   double seconds = 0.0;        ///< processor time
   std::vector<SurfacePoint> profile;
-  std::vector<Eigen::Vector3d> position;     ///< d
-  std::vector<Eigen::Matrix3d> virial;       ///< k d
+  std::vector<Eigen::Vector3d> position; ///< d
+  std::vector<Eigen::Matrix3d> virial;   ///< k d
 };
 
-/// Presses the grain to each approach in turn (rising), by the static solver; turns and sideways motions of the grain as a
-/// whole are held back. \throws std::runtime_error when a state cannot be relaxed.
+/// Presses the grain to each approach in turn (rising), by the static solver; turns and sideways motions of the grain
+/// as a whole are held back. \throws std::runtime_error when a state cannot be relaxed.
 std::vector<SphereState> press_sphere(const GrainTemplate& sphere, double alpha, const SurfaceRule& rule,
                                       const std::vector<double>& approaches, Press press = Press::walls);
 

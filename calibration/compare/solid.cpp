@@ -22,7 +22,8 @@ Solid calibrate_solid(const GrainTemplate& box, double alpha, const std::filesys
     strains.push_back(-largest_strain * n / 7.0);
   }
   for (const UniaxialPoint& point : uniaxial_curve(box, alpha, strains)) {
-    file << fmt::format("{:.8g},{:.8g},{:.8g}\n", 1.0 - point.axial_stretch, -point.stress, point.lateral_stretch - 1.0);
+    file << fmt::format("{:.8g},{:.8g},{:.8g}\n", 1.0 - point.axial_stretch, -point.stress,
+                        point.lateral_stretch - 1.0);
   }
   file.close();
   if (!file) {

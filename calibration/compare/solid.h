@@ -16,8 +16,9 @@ struct Solid {
   std::filesystem::path compression; ///< its uniaxial test, as `boba-continuum --fit` reads it
 };
 
-/// Calibrates the bulk afresh: static stiffness and uniaxial compression of the periodic box to `largest_strain`; the test is
-/// written into `folder`. A law fitted over more strain than a body sees is worse over what it sees. \throws what relaxed_stiffness and uniaxial_curve throw.
+/// Calibrates the bulk afresh: static stiffness and uniaxial compression of the periodic box to `largest_strain`; the
+/// test is written into `folder`. A law fitted over more strain than a body sees is worse over what it sees. \throws
+/// what relaxed_stiffness and uniaxial_curve throw.
 Solid calibrate_solid(const GrainTemplate& box, double alpha, const std::filesystem::path& folder,
                       double largest_strain = 0.2);
 

@@ -8,9 +8,10 @@ namespace boba::calibration {
 
 /// Where the surface of a round grain of nodes is, and how soft, fixed from its undeformed nodes alone.
 ///
-/// The surface layer is one layer of the bulk: density^(2/3) nodes per area, the outermost ones. A plate touches a node at d/2,
-/// so the surface that a continuum's plate meets lies d/2 outside the layer's mean radius. Every node of the layer is one
-/// spring of the wall law (bpm/laws/wall.h), so that plate and body have between them p = c1 g + c3 g^3 of the overlap g.
+/// The surface layer is one layer of the bulk: density^(2/3) nodes per area, the outermost ones. A plate touches a node
+/// at d/2, so the surface that a continuum's plate meets lies d/2 outside the layer's mean radius. Every node of the
+/// layer is one spring of the wall law (bpm/laws/wall.h), so that plate and body have between them p = c1 g + c3 g^3 of
+/// the overlap g.
 struct SurfaceRule {
   double radius = 0.0;         ///< d: mean radius of the layer plus d/2
   double nodes_per_area = 0.0; ///< n_s, d^-2

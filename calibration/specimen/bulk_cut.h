@@ -21,8 +21,8 @@ BulkDensity bulk_density(const GrainTemplate& box);
 /// A body (shape and size of `spec`, which is not built itself) cut out of the endlessly repeated periodic box, at a
 /// place and in an orientation drawn with `sample`.
 ///
-/// Nodes that the cut leaves without a firm hold (fewer than four bonds, or bonds in nearly one plane) are taken off, since
-/// a body of many nodes nearly always has one. Costs nothing beside relaxing a bulk of the body's own size.
+/// Nodes that the cut leaves without a firm hold (fewer than four bonds, or bonds in nearly one plane) are taken off,
+/// since a body of many nodes nearly always has one. Costs nothing beside relaxing a bulk of the body's own size.
 /// \throws std::invalid_argument for a template without a period; std::runtime_error when nothing firm is left.
 GrainTemplate cut_from_bulk(const GrainTemplate& box, const TemplateSpec& spec, std::uint64_t sample);
 

@@ -59,7 +59,8 @@ CylinderResult measure(const GrainTemplate& cylinder, const std::vector<Vector3>
   const auto count = static_cast<double>(middle.size());
   mean /= count;
   mean_u /= count;
-  CylinderResult result{.force = force, .free_height = slabs.free_height(), .density_area = count / (bulk.nodes * third)};
+  CylinderResult result{
+      .force = force, .free_height = slabs.free_height(), .density_area = count / (bulk.nodes * third)};
   for (const Bond& bond : cylinder.bonds) {
     const double z = 0.5 * (reference[bond.i].z() + reference[bond.j].z());
     result.bond_area += z > low && z < high ? bond.r0 * bond.r0 / (bulk.bonds * third) : 0.0;

@@ -27,7 +27,8 @@ Matrix3 free_components(const std::array<bool, 3>& held) {
 
 NonlinearNetwork::NonlinearNetwork(const GrainTemplate& grain, double alpha)
     : alpha_(alpha), reference_(grain.position), position_(grain.position), period_(grain.period),
-      volume0_(reference_node_volumes(grain.n_nodes(), grain.bonds)), held_(grain.n_nodes(), Held{false, false, false}) {
+      volume0_(reference_node_volumes(grain.n_nodes(), grain.bonds)),
+      held_(grain.n_nodes(), Held{false, false, false}) {
   for (const Bond& bond : grain.bonds) {
     Vector3 cells = Vector3::Zero();
     if (period_) {

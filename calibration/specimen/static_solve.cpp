@@ -17,7 +17,7 @@ namespace {
 using NewtonSolver = PetscHandle<SNES, SNESDestroy>;
 
 constexpr double contact_margin = NonlinearNetwork::contact_margin;
-constexpr int most_lists = 20;   // of contacts, in one relaxation
+constexpr int most_lists = 20; // of contacts, in one relaxation
 constexpr int most_creeps = 6, creep_steps = 1200, steps_a_list = 20;
 
 } // namespace

@@ -49,6 +49,11 @@ TEST(CommandLine, WrongInputEndsWithTwoAndSaysWhatIsAllowed) {
   expect("find --poisson 0.1 --young -2 --nodes 500", 2, "young = -2");
   expect("strain --alpha -3", 2, "stability limit");
   expect("specimen --alpha 0 --strain 0.9", 2, "strain = 0.9");
+  const std::string folder = testing::TempDir() + "boba-compare";
+  expect("compare sphere --output " + folder, 2, "alpha or poisson");
+  expect("compare sphere --alpha=-2 --bulk-nodes 500 --force --output " + folder, 2, "stability limit");
+  expect("compare sphere --alpha 0 --bulk-nodes 500 --nodes 3 --force --output " + folder, 2, "nodes = 3");
+  expect("compare cylinder --alpha 0 --bulk-nodes 500 --strain 0.9 --force --output " + folder, 2, "0 .. 0.25");
 }
 
 TEST(CommandLine, ASolveThatFailsEndsWithOneAndGivesNoNumber) {

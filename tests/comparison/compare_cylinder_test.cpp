@@ -9,8 +9,8 @@
 namespace boba::calibration {
 namespace {
 
-/// A cylinder of the grain's radius (10 d, 15400 nodes) at 1 % strain against the finite-strain continuum. At R = 7 d the
-/// stiffness is 3 to 4 % above it with held ends: docs/comparison.md.
+/// A cylinder of the grain's radius (10 d, 15400 nodes) at 1 % strain against the finite-strain continuum. At R = 7 d
+/// the stiffness is 3 to 4 % above it with held ends: docs/comparison.md.
 class Cylinders : public ::testing::TestWithParam<double> {};
 
 TEST_P(Cylinders, FollowTheContinuumAtOnePercent) {
@@ -25,7 +25,8 @@ TEST_P(Cylinders, FollowTheContinuumAtOnePercent) {
     const auto& modulus = row_of(document, setup, 0.01, "apparent_modulus");
     const auto& poisson = row_of(document, setup, 0.01, "poisson");
     const double reference = modulus["continuum"]["finite"];
-    expect_near(fmt::format("alpha = {}, {}: apparent modulus", alpha, setup), modulus["particles"], reference, 0.03 * reference);
+    expect_near(fmt::format("alpha = {}, {}: apparent modulus", alpha, setup), modulus["particles"], reference,
+                0.03 * reference);
     expect_near(fmt::format("alpha = {}, {}: nu at mid-height", alpha, setup), poisson["particles"],
                 poisson["continuum"]["finite"], 0.02);
   }
@@ -38,7 +39,8 @@ TEST_P(Cylinders, FollowTheContinuumAtOnePercent) {
     }
     const bool none = std::abs(one["poisson"].get<double>()) < 0.05;
     const double tolerance = none ? 0.02 * 0.01 * one["radius"].get<double>() / largest : 0.05;
-    expect_near(fmt::format("alpha = {}, {}: misfit of the profile over its largest value", alpha, one["setup"].get<std::string>()),
+    expect_near(fmt::format("alpha = {}, {}: misfit of the profile over its largest value", alpha,
+                            one["setup"].get<std::string>()),
                 profile["misfit"]["finite"], 0.0, tolerance);
   }
 }

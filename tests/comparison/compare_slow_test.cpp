@@ -25,7 +25,8 @@ double force_error(int n_nodes, int samples) {
 
 TEST(Resolution, MoreNodesBringTheForceCloserToTheContinuum) {
   const double coarse = force_error(1000, 4), fine = force_error(20000, 1);
-  fmt::print("force over the continuum's at approach / R = 0.1: {:+.3f} at 1000 nodes, {:+.3f} at 20000\n", coarse, fine);
+  fmt::print("force over the continuum's at approach / R = 0.1: {:+.3f} at 1000 nodes, {:+.3f} at 20000\n", coarse,
+             fine);
   EXPECT_LT(std::abs(fine), 0.08);
   EXPECT_LT(std::abs(fine), std::abs(coarse));
 }
@@ -38,7 +39,8 @@ TEST(Presses, AMirrorImageIsNearlyAWall) {
   settings.presses = {Press::walls, Press::mirror};
   const auto document = compare_sphere(settings);
   std::filesystem::remove_all(settings.folder);
-  const double wall = row_of(document, "walls", 0.1, "force")["particles"], mirror = row_of(document, "mirror", 0.1, "force")["particles"];
+  const double wall = row_of(document, "walls", 0.1, "force")["particles"],
+               mirror = row_of(document, "mirror", 0.1, "force")["particles"];
   expect_near("force of two mirrored grains against the wall's", mirror, wall, 0.05 * wall);
 }
 
@@ -57,7 +59,8 @@ TEST(Presses, TheEngineFindsTheStaticForce) {
   const double force = 0.5 * (std::abs(ends[0]) + std::abs(ends[1])), gap = simulation.end_gap();
   const SurfaceRule rule{.radius = 6.0};
   const double still = press_sphere(grain, 2.0, rule, {rule.radius - 0.5 * gap}).front().force;
-  expect_near(fmt::format("force of the engine at a gap of {:.3f} d against the static one", gap), force, still, 0.03 * still);
+  expect_near(fmt::format("force of the engine at a gap of {:.3f} d against the static one", gap), force, still,
+              0.03 * still);
 }
 
 } // namespace

@@ -9,8 +9,9 @@
 namespace boba::calibration {
 namespace {
 
-/// Spheres of 5137 nodes between walls against the finite-strain continuum with the layer of a flat cut face. Five percent in the
-/// force are not reached at this resolution, 3 to 10 are; the bulge of the most auxetic grain is 0.015 off (0.04 at 1000 nodes): docs/comparison.md.
+/// Spheres of 5137 nodes between walls against the finite-strain continuum with the layer of a flat cut face. Five
+/// percent in the force are not reached at this resolution, 3 to 10 are; the bulge of the most auxetic grain is 0.015
+/// off (0.04 at 1000 nodes): docs/comparison.md.
 class Spheres : public ::testing::TestWithParam<double> {};
 
 TEST_P(Spheres, FollowTheContinuum) {
@@ -22,11 +23,13 @@ TEST_P(Spheres, FollowTheContinuum) {
   for (const double load : {0.05, 0.1}) {
     const auto& force = row_of(document, "walls", load, "force");
     const double reference = force.at("continuum").at("finite_layer");
-    expect_near(fmt::format("alpha = {}, approach / R = {}: force", alpha, load), force["particles"], reference, 0.12 * reference);
+    expect_near(fmt::format("alpha = {}, approach / R = {}: force", alpha, load), force["particles"], reference,
+                0.12 * reference);
     const auto& bulge = row_of(document, "walls", load, "bulge_number");
     const double number = bulge.at("continuum").at("linear_layer");
     expect_near(fmt::format("alpha = {}, approach / R = {}: u_eq E R / F", alpha, load), bulge["particles"], number,
-                alpha > 10.0 ? 0.02 : std::max(0.01, 0.1 * std::abs(number) + bulge.at("particles_error").get<double>()));
+                alpha > 10.0 ? 0.02
+                             : std::max(0.01, 0.1 * std::abs(number) + bulge.at("particles_error").get<double>()));
   }
 }
 

@@ -23,7 +23,8 @@ ComparisonSettings comparison_case(double alpha, std::vector<double> loads, cons
   return settings;
 }
 
-const nlohmann::json& row_of(const nlohmann::json& document, const std::string& setup, double load, const std::string& quantity) {
+const nlohmann::json& row_of(const nlohmann::json& document, const std::string& setup, double load,
+                             const std::string& quantity) {
   for (const auto& row : document.at("rows")) {
     if (row["setup"] == setup && row["quantity"] == quantity && std::abs(row["load"].get<double>() - load) < 1e-9) {
       return row;
@@ -33,8 +34,8 @@ const nlohmann::json& row_of(const nlohmann::json& document, const std::string& 
 }
 
 void expect_near(const std::string& what, double measured, double reference, double tolerance) {
-  fmt::print("{}: measured {:.5g}, reference {:.5g}, difference {:+.3g} ({:+.1f} %), tolerance {:.3g}\n", what, measured, reference,
-             measured - reference, 100.0 * (measured / reference - 1.0), tolerance);
+  fmt::print("{}: measured {:.5g}, reference {:.5g}, difference {:+.3g} ({:+.1f} %), tolerance {:.3g}\n", what,
+             measured, reference, measured - reference, 100.0 * (measured / reference - 1.0), tolerance);
   std::fflush(stdout);
   EXPECT_NEAR(measured, reference, tolerance) << what;
 }

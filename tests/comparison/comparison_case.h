@@ -12,7 +12,8 @@ namespace boba::calibration {
 ComparisonSettings comparison_case(double alpha, std::vector<double> loads, const std::string& name);
 
 /// The row of a quantity at a load.
-const nlohmann::json& row_of(const nlohmann::json& document, const std::string& setup, double load, const std::string& quantity);
+const nlohmann::json& row_of(const nlohmann::json& document, const std::string& setup, double load,
+                             const std::string& quantity);
 
 /// Prints measured, reference, difference and tolerance, and expects |measured - reference| <= tolerance (absolute).
 void expect_near(const std::string& what, double measured, double reference, double tolerance);
