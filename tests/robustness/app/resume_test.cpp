@@ -76,8 +76,11 @@ TEST(Resume, AfterBeingKilled) {
     const std::string out = "killed" + std::to_string(n_rounds++);
     std::vector<std::string> run{"run", "scene.toml", "--output", out};
     run.insert(run.end(), often.begin(), often.end());
-    ProgramResult result =
-        boba(run, folder, Disturbance{moment(random), SIGKILL, (folder / out / "checkpoints/checkpoint-000000.boba").string()});
+    ProgramResult result = boba(run, folder, Disturbance{moment(random), SIGKILL, (folder / out / "checkpoints").string()});
+    if (std::filesystem::is_empty(folder / out / "checkpoints")) { // killed before there was anything to go on from
+      std::filesystem::remove_all(folder / out);
+      continue;
+    }
     while (result.signal == SIGKILL) {
       ++n_kills;
       result = n_kills < n_wanted ? boba({"resume", out, "--quiet"}, folder, Disturbance{0.05 + moment(random), SIGKILL})
