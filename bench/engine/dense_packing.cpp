@@ -2,17 +2,18 @@
 #include "bench/engine/dense_packing.h"
 
 #include "bpm/dynamics/stage_driver.h"
+#include "bpm/dynamics/stepper.h"
 #include "bpm/grain/template_cache.h"
+#include "bpm/io/checkpoint.h"
 #include "bpm/packing/insertion.h"
+
+#include <fmt/format.h>
 
 #include <stdexcept>
 
 namespace boba::bench {
 
-namespace {
-
-/// P at P~ = P (2 - 2 nu^2) / E = 0.1 with the pairs published by Clemmer, Hackney & Grest.
-double target_pressure(double alpha) {
+double dense_pressure(double alpha) {
   if (alpha == 0.0) {
     return 0.1 * 1.84 / (2.0 - 2.0 * 0.25 * 0.25);
   }
@@ -22,31 +23,66 @@ double target_pressure(double alpha) {
   throw std::invalid_argument("dense packing: alpha must be 0 or 2");
 }
 
-} // namespace
+CellRates dense_shear_rates(double excess_pressure) { return {.shear = 1.024e-3, .dilation = 0.02 * excess_pressure}; }
 
-DensePacking make_dense_packing(int n_grains, int n_nodes, double alpha, int threads) {
+namespace {
+
+Packing loose_packing(int n_grains, int n_nodes, double alpha) {
   TemplateSpec spec;
   spec.n_nodes = n_nodes;
   Insertion insertion;
   insertion.templates = {std::make_shared<const GrainTemplate>(TemplateCache().get(spec))};
   insertion.grains.assign(n_grains, Grain{.alpha = alpha});
   insertion.packing_fraction = 0.38;
+  return insert_at_random(insertion);
+}
 
-  DensePacking dense;
-  dense.pressure = target_pressure(alpha);
-  dense.stepper = std::make_unique<Stepper>(insert_at_random(insertion), Material{}, SimulationOptions{.threads = threads});
-  const auto driver = make_stage_driver(CompressStage{.barostat = {.pressure = dense.pressure},
-                                                      .rate = 2e-3,
-                                                      .pressure_tolerance = 0.01,
-                                                      .kinetic_tolerance = 1e-2});
-  dense.stepper->start();
-  driver->begin(*dense.stepper);
+Snapshot compressed_and_sheared(const Packing& loose, double pressure) {
+  Stepper stepper(loose, Material{}, SimulationOptions{.threads = 2});
+  const auto driver = make_stage_driver(CompressStage{
+      .barostat = {.pressure = pressure}, .rate = 2e-3, .pressure_tolerance = 0.01, .kinetic_tolerance = 1e-2});
+  stepper.start();
+  driver->begin(stepper);
   while (!driver->finished()) {
-    dense.stepper->advance(Virial::trace);
-    dense.stepper->move_cell(driver->update(*dense.stepper));
+    stepper.advance(Virial::trace);
+    stepper.move_cell(driver->update(stepper));
   }
-  dense.gain = 0.02;
-  return dense;
+  while (stepper.strain() < 0.1) {
+    stepper.advance(Virial::trace);
+    stepper.move_cell(dense_shear_rates(stepper.pressure() - pressure));
+  }
+  stepper.advance(Virial::full);
+  return stepper.snapshot({.velocity = true});
+}
+
+std::vector<double> flat(const std::vector<Vector3>& vectors) {
+  return {vectors.front().data(), vectors.front().data() + 3 * vectors.size()};
+}
+
+void copy_into(std::vector<Vector3>& vectors, const std::vector<double>& numbers) {
+  std::copy(numbers.begin(), numbers.end(), vectors.front().data());
+}
+
+} // namespace
+
+Packing dense_packing(int n_grains, int n_nodes, double alpha) {
+  Packing packing = loose_packing(n_grains, n_nodes, alpha);
+  const std::filesystem::path store =
+      default_cache_directory() / fmt::format("dense-{}x{}-alpha{}", n_grains, n_nodes, alpha);
+  if (!std::filesystem::exists(store)) {
+    const Snapshot dense = compressed_and_sheared(packing, dense_pressure(alpha));
+    CheckpointData data;
+    data.real["position"] = flat(dense.position);
+    data.real["velocity"] = flat(dense.velocity);
+    data.real["cell"] = {dense.box.h().data(), dense.box.h().data() + 9};
+    std::filesystem::create_directories(store);
+    write_checkpoint(store, data);
+  }
+  const CheckpointData data = latest_checkpoint(store).data;
+  copy_into(packing.position, data.real.at("position"));
+  copy_into(packing.velocity, data.real.at("velocity"));
+  packing.box.set_h(Eigen::Map<const Matrix3>(data.real.at("cell").data()));
+  return packing;
 }
 
 } // namespace boba::bench

@@ -3,18 +3,18 @@
 
 #include "bpm/dynamics/stepper.h"
 
-#include <memory>
-
 namespace boba::bench {
 
-/// A packing at P~ = 0.1, ready to be sheared: grains inserted at random at a packing fraction of 0.38 and compressed.
-struct DensePacking {
-  std::unique_ptr<Stepper> stepper;
-  double pressure = 0.0; ///< target, k/d
-  double gain = 0.0;     ///< of the barostat, d/(k tau)
-};
+/// P at P~ = P (2 - 2 nu^2) / E = 0.1 with the pairs published by Clemmer, Hackney & Grest, k/d.
+double dense_pressure(double alpha);
 
+/// The paper's fastest shear rate, and a barostat of gain 0.02 d/(k tau).
+CellRates dense_shear_rates(double excess_pressure);
+
+/// A packing under shear at P~ = 0.1: grains inserted at random at a packing fraction of 0.38, compressed and sheared to
+/// a strain of 0.1. That takes minutes for large packings, so the state is kept in the template cache's folder.
+///
 /// \param n_nodes per grain; \param alpha 0 or 2, for which the published E and nu give P from P~
-DensePacking make_dense_packing(int n_grains, int n_nodes, double alpha, int threads);
+Packing dense_packing(int n_grains, int n_nodes, double alpha);
 
 } // namespace boba::bench

@@ -16,8 +16,10 @@ Stepper::Stepper(Packing packing, const Material& material, const SimulationOpti
   omp_set_num_threads(options.threads);
 }
 
-void Stepper::evaluate(const Evaluation& what) {
+void Stepper::evaluate(Evaluation what) {
+  what.keep_forces = what.virial == Virial::full || !clamps_.empty();
   forces_.evaluate(state_, box_, what);
+  forces_kept_ = what.keep_forces;
   evaluated_volume_ = box_.volume();
   for (Clamp& clamp : clamps_) {
     apply_clamp(clamp, state_);
@@ -27,17 +29,17 @@ void Stepper::evaluate(const Evaluation& what) {
   }
 }
 
-void Stepper::evaluate_only() { evaluate({0.0, 0.0, Virial::full, residual_rate_}); }
+void Stepper::evaluate_only() { evaluate({.virial = Virial::full, .residual_rate = residual_rate_}); }
 
 void Stepper::start() {
   started_ = true;
   // The dumped velocities are those of the full step: the sums must see them as they are.
-  evaluate({0.5 * options_.dt, 0.0, Virial::full, residual_rate_});
+  evaluate({.kick = 0.5 * options_.dt, .virial = Virial::full, .residual_rate = residual_rate_});
 }
 
 void Stepper::advance(Virial virial) {
   drift();
-  evaluate({options_.dt, 0.5 * options_.dt, virial, residual_rate_});
+  evaluate({.kick = options_.dt, .half_kick = 0.5 * options_.dt, .virial = virial, .residual_rate = residual_rate_});
   ++step_;
 }
 
@@ -57,13 +59,7 @@ void Stepper::drift() {
   }
   drift.residual_shift = -residual.dot(box_.origin());
 
-  const std::vector<Block>& blocks = layout_.blocks();
-  std::vector<kernels::DriftResult> results(blocks.size());
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int b = 0; b < static_cast<int>(blocks.size()); ++b) {
-    results[b] = forces_.kernel_table().drift(state_.x.data() + blocks[b].offset, state_.v.data() + blocks[b].offset,
-                                              blocks[b].n_nodes, blocks[b].n_lanes, drift);
-  }
+  const std::vector<kernels::DriftResult> results = forces_.drift(state_, drift);
   check_drift(results);
   double speed2 = 0.0;
   for (const kernels::DriftResult& result : results) {
@@ -152,7 +148,7 @@ double Stepper::virial_pressure_when_scaled(const AlignedVector& x, double facto
   Box scaled_box = box_;
   scaled_box.set_h(factor * box_.h());
   forces_.contact_list().invalidate();
-  forces_.evaluate(state_, scaled_box, {0.0, 0.0, Virial::trace, residual_rate_});
+  forces_.evaluate(state_, scaled_box, {.virial = Virial::trace, .residual_rate = residual_rate_});
   double virial = 0.0;
   for (const GrainSums& grain : forces_.grain_sums()) {
     virial += grain.virial_trace;
@@ -161,7 +157,7 @@ double Stepper::virial_pressure_when_scaled(const AlignedVector& x, double facto
 }
 
 double Stepper::affine_bulk_modulus() {
-  const AlignedVector x = state_.x, f = state_.f;
+  const AlignedVector x = state_.x;
   const ForceField::Results results = forces_.results();
   const std::vector<Wall> walls = forces_.walls();
   const double step = 1e-5;
@@ -169,7 +165,6 @@ double Stepper::affine_bulk_modulus() {
   const double tighter = virial_pressure_when_scaled(x, 1.0 - step);
   // Nothing of the state has moved but these; the list of the next step is built anew and gives the same forces.
   state_.x = x;
-  state_.f = f;
   forces_.set_results(results);
   forces_.walls() = walls;
   forces_.contact_list().invalidate();

@@ -56,6 +56,8 @@ public:
   /// Time sound needs across the cell's shortest side, with the modulus above (tau).
   double sound_crossing(double bulk_modulus) const;
   Totals totals() const; ///< needs an evaluation with Virial::full
+  /// \throws std::logic_error when velocities or forces are asked for at a step that nobody asked the full stress of: its
+  /// forces were not kept.
   Snapshot snapshot(Simulation::Parts parts) const;
   /// Smallest and largest z of any node, d.
   std::array<double, 2> extent_z() const;
@@ -92,7 +94,7 @@ private:
   void restore_ends(const SavedState& saved);
   void drift();
   void check_drift(const std::vector<kernels::DriftResult>& results) const;
-  void evaluate(const Evaluation& what);
+  void evaluate(Evaluation what);
   void sum_up();
   double virial_pressure_when_scaled(const AlignedVector& x, double factor);
 
@@ -106,6 +108,7 @@ private:
   std::vector<Clamp> clamps_;
   double end_gap_ = 0.0; ///< between the ends of a pressed specimen, d
   bool started_ = false;
+  bool forces_kept_ = false; ///< state_.f holds the forces of the last evaluation
   std::int64_t step_ = 0;
   double strain_ = 0.0;
   Matrix3 cell_map_ = Matrix3::Identity();     ///< of the whole cell, at the end of the last step

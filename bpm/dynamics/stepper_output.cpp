@@ -22,6 +22,10 @@ Totals Stepper::totals() const {
 }
 
 Snapshot Stepper::snapshot(Simulation::Parts parts) const {
+  if ((parts.velocity || parts.force) && !forces_kept_) {
+    throw std::logic_error("snapshot: the forces of step " + std::to_string(step_) + " were not kept; an "
+                           "observer must ask for it");
+  }
   Snapshot snapshot;
   snapshot.step = step_;
   snapshot.time = time();
@@ -99,7 +103,7 @@ void Stepper::save(SavedState& saved) const {
   saved.real["residual_rate"] = flat(residual_rate_);
   saved.real["scalars"] = {strain_, evaluated_volume_, pressure_, kinetic_energy_};
   saved.integer["step"] = {step_};
-  saved.integer["started"] = {started_ ? 1 : 0};
+  saved.integer["started"] = {started_ ? 1 : 0, forces_kept_ ? 1 : 0};
   save_ends(saved);
 }
 
@@ -170,6 +174,7 @@ void Stepper::restore(const SavedState& saved) {
   restore_ends(saved);
   step_ = saved.integer.at("step").at(0);
   started_ = saved.integer.at("started").at(0) != 0;
+  forces_kept_ = saved.integer.at("started").at(1) != 0;
   forces_.contact_list().invalidate();
 }
 

@@ -6,6 +6,7 @@
 #include "bpm/forces/network_data.h"
 #include "bpm/packing/lane_layout.h"
 
+#include <span>
 #include <vector>
 
 namespace boba {
@@ -17,8 +18,8 @@ namespace boba {
 /// and its pairs are added: a few fast nodes cost a few look-ups. Only when many nodes have done so, or the cell
 /// has deformed by several per cent, everything is built anew.
 ///
-/// The list of a grain is sorted by own node, then by the other node and its image (partners in full blocks before those in
-/// blocks of one lane): an order that follows from the state alone.
+/// The list of a grain is sorted by own node, then by the other node and its image: an order that follows from the state
+/// alone. Nodes with a candidate have a slot in a compact array that the contact pass reads instead of the lanes.
 /// Since candidates that do not touch add nothing, forces are bit for bit the same whether the list was built at this step
 /// or earlier, by one thread or by many. (Nothing of the list needs to be stored in a checkpoint.)
 /// Source: docs/decisions/contacts.md.
@@ -26,15 +27,22 @@ class ContactList {
 public:
   ContactList(const LaneLayout& layout, double diameter, double skin);
 
-  /// Makes sure that no contact of the present state is missing. `network_of_grain` as given at the first call.
-  void update(const LaneState& state, const Box& box, const std::vector<const NetworkData*>& network_of_grain);
+  /// Makes sure that no contact of the present state is missing; true when the list changed. `network_of_grain` as given
+  /// at the first call.
+  bool update(const LaneState& state, const Box& box, const std::vector<const NetworkData*>& network_of_grain);
   /// Tells the list that the cell was mapped by `cell_map` and that no node moved farther than `displacement` beyond that.
   void note_motion(const Matrix3& cell_map, double displacement);
   /// The cell's vectors or the state changed in a way that note_motion was not told of.
   void invalidate() { built_ = false; }
 
-  /// Candidates of one grain whose other node lives in a block of `other_stride` lanes (block_lanes or 1).
-  kernels::ContactRows rows(int grain, int other_stride) const;
+  /// Candidates of one grain, by slots.
+  kernels::ContactRows rows(int grain) const;
+  /// The slots of a block's nodes and where in the lane arrays they come from.
+  std::span<const kernels::ContactSource> sources(int block) const { return sources_[block]; }
+  /// Slots of one grain are [first_slot, first_slot + n_slots).
+  std::int32_t first_slot(int grain) const { return first_slot_[grain]; }
+  std::int32_t n_slots(int grain) const { return n_slots_[grain]; }
+  std::int32_t slot_capacity() const { return first_slot_.back(); }
   const std::vector<ImageVector>& images() const { return images_; }
   std::int64_t n_candidates() const;
   std::int64_t n_builds() const { return n_builds_; }
@@ -47,14 +55,14 @@ private:
 
   struct Rows {
     std::vector<std::int32_t> own, other, image;
-    std::int64_t n_wide = 0; ///< the first n_wide candidates have their other node in a full block
   };
-  /// A row of the list before it is split into columns; sorted by the members in this order.
+  /// A candidate by numbers of nodes in the packing; sorted by the members in this order.
   struct SortedPair {
-    bool narrow;
     std::int32_t own, other, image;
     auto operator<=>(const SortedPair&) const = default;
   };
+  /// By place in the lane arrays, so that a cache line is read once for all lanes.
+  static bool by_place(const kernels::ContactSource& a, const kernels::ContactSource& b) { return a.from < b.from; }
   struct MovedNode {
     std::int32_t grain, node;
   };
@@ -69,7 +77,9 @@ private:
   void collect_images();
   std::int32_t image_index(const ImageVector& image) const;
   void build_rows(int grain, const NetworkData& network);
-  SortedPair row_of(int grain, int node, int other, int other_node, std::int32_t image) const;
+  SortedPair pair_of(int grain, int node, int other, int other_node, std::int32_t image) const;
+  void assign_slots();
+  bool add_slots(int grain, const std::vector<SortedPair>& pairs);
   void set_rows(int grain, const std::vector<SortedPair>& sorted);
 
   double allowed_displacement() const;
@@ -95,6 +105,12 @@ private:
   std::vector<std::vector<NeighbourGrain>> neighbours_;
   std::vector<ImageVector> images_; ///< sorted; with n also -n
   std::vector<Rows> rows_;
+  std::vector<std::int32_t> first_node_;               ///< per grain, in the packing
+  std::vector<std::vector<SortedPair>> pairs_;         ///< of a build, until they have slots
+  std::vector<std::int32_t> first_slot_;               ///< per grain, and the end; with room for new references
+  std::vector<std::int32_t> n_slots_;                  ///< per grain
+  std::vector<std::int32_t> node_of_slot_, slot_of_node_; ///< node in the packing; -1 for a node without candidates
+  std::vector<std::vector<kernels::ContactSource>> sources_; ///< per block
   std::int64_t n_moved_ = 0, n_nodes_ = 0; ///< new references since the build; all nodes
   std::int64_t n_builds_ = 0, n_refreshed_ = 0;
 };

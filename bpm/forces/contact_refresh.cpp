@@ -23,11 +23,11 @@ double ContactList::allowed_displacement() const {
   return 0.5 * (stretch * (diameter_ + skin_) - diameter_);
 }
 
-void ContactList::update(const LaneState& state, const Box& box,
+bool ContactList::update(const LaneState& state, const Box& box,
                          const std::vector<const NetworkData*>& network_of_grain) {
   const double allowed = allowed_displacement();
   if (built_ && bound_ <= allowed) {
-    return;
+    return false;
   }
   if (built_ && allowed > 0.25 * skin_) {
     const Displacements displacements = measure(state, refresh_share * allowed);
@@ -35,10 +35,11 @@ void ContactList::update(const LaneState& state, const Box& box,
     if (n_moved <= largest_moved_share * static_cast<double>(n_nodes_) &&
         refresh(displacements.moved, state, network_of_grain)) {
       bound_ = displacements.largest_rest;
-      return;
+      return !displacements.moved.empty();
     }
   }
   build(state, box, network_of_grain);
+  return true;
 }
 
 ContactList::Displacements ContactList::measure(const LaneState& state, double threshold) const {
@@ -111,8 +112,8 @@ void ContactList::find_pairs(const MovedNode& moved, const NetworkData& network,
   // Nodes that have moved since the build are also found where they were: listed too often, never too rarely.
   std::vector<std::int32_t> nodes;
   const auto add = [&](int other, std::int32_t j, const ImageVector& n) {
-    found[g].push_back(row_of(g, i, other, j, image_index(n)));
-    found[other].push_back(row_of(other, j, g, i, image_index({-n.a, -n.b, -n.c})));
+    found[g].push_back(pair_of(g, i, other, j, image_index(n)));
+    found[other].push_back(pair_of(other, j, g, i, image_index({-n.a, -n.b, -n.c})));
   };
   for (const NeighbourGrain& neighbour : neighbours_[g]) {
     const ImageVector& n = neighbour.image;
@@ -138,7 +139,7 @@ void ContactList::merge_rows(int grain, std::vector<SortedPair>& added) {
   const Rows& rows = rows_[grain];
   merged.reserve(rows.own.size() + added.size());
   for (std::size_t e = 0; e < rows.own.size(); ++e) {
-    merged.push_back({static_cast<std::int64_t>(e) >= rows.n_wide, rows.own[e], rows.other[e], rows.image[e]});
+    merged.push_back({node_of_slot_[rows.own[e]], node_of_slot_[rows.other[e]], rows.image[e]});
   }
   const auto middle = static_cast<std::ptrdiff_t>(merged.size());
   std::sort(added.begin(), added.end());
@@ -158,6 +159,20 @@ bool ContactList::refresh(const std::vector<MovedNode>& moved, const LaneState& 
   std::vector<std::vector<SortedPair>> found(layout_.n_grains());
   for (const MovedNode& node : moved) {
     find_pairs(node, *network_of_grain[node.grain], found);
+  }
+  std::vector<std::size_t> n_sorted;
+  for (const auto& sources : sources_) {
+    n_sorted.push_back(sources.size());
+  }
+  for (int g = 0; g < layout_.n_grains(); ++g) {
+    if (!add_slots(g, found[g])) {
+      return false;
+    }
+  }
+  for (std::size_t b = 0; b < sources_.size(); ++b) {
+    const auto middle = sources_[b].begin() + static_cast<std::ptrdiff_t>(n_sorted[b]);
+    std::sort(middle, sources_[b].end(), by_place);
+    std::inplace_merge(sources_[b].begin(), middle, sources_[b].end(), by_place);
   }
 #pragma omp parallel for schedule(dynamic, 1)
   for (int g = 0; g < layout_.n_grains(); ++g) {

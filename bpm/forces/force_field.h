@@ -37,6 +37,7 @@ struct Evaluation {
   double kick = 0.0;      ///< v += kick f / m when a node's force is complete, tau
   double half_kick = 0.0; ///< full-step velocity = v + half_kick f / m, tau
   Virial virial = Virial::none;
+  bool keep_forces = false; ///< write the forces to the state; otherwise they live in scratch only
   /// d/dt of the cell matrix as far as it does not act on positions (remap = "velocities"): an image displaced by h n moves
   /// with rate n, and the streaming velocity is taken from the kinetic tensor.
   Matrix3 residual_rate = Matrix3::Zero();
@@ -49,6 +50,8 @@ class ForceField {
 public:
   ForceField(const Packing& packing, const LaneLayout& layout, const Material& material, double skin);
 
+  /// Moves all nodes; per block, what the drift saw.
+  std::vector<kernels::DriftResult> drift(LaneState& state, const kernels::Drift& drift);
   /// Rebuilds the contact list when it must, and evaluates. Returns the sums of every grain (valid where asked for).
   void evaluate(LaneState& state, const Box& box, const Evaluation& what);
 
@@ -84,8 +87,12 @@ public:
   double bond_seconds = 0.0, contact_seconds = 0.0, search_seconds = 0.0;
 
 private:
-  void contacts_of(int grain, LaneState& state, const kernels::ContactParameters& parameters, bool with_sums);
-  void bonds_of(const Block& block, LaneState& state, const Box& box, const Evaluation& what);
+  void prepare_contacts(const LaneState& state, const Box& box);
+  void collect(int b, const LaneState& state);
+  kernels::DriftResult drift_block(int b, LaneState& state, const kernels::Drift& drift);
+  double walls_on(int b, LaneState& state, std::size_t wall, double* f, bool with_sums);
+  void contacts_of(int grain, const kernels::ContactParameters& parameters, bool with_sums);
+  void bonds_of(int b, LaneState& state, const Box& box, const Evaluation& what);
   void reduce_contacts();
 
   const LaneLayout& layout_;
@@ -97,6 +104,10 @@ private:
   std::vector<Wall> walls_;
   Results results_;
   std::vector<kernels::ContactSums> contact_sums_;
+  std::vector<kernels::ContactNode, boost::alignment::aligned_allocator<kernels::ContactNode, 64>> contact_nodes_;
+  std::vector<kernels::ContactForce> contact_forces_;
+  bool collected_ = false; ///< contact nodes are those of the present positions
+  std::vector<std::vector<double>> wall_forces_; ///< per wall and block
   bool has_periodic_template_ = false;
 };
 

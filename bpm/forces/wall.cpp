@@ -7,8 +7,8 @@
 
 namespace boba {
 
-double add_wall_forces(const Wall& wall, const Material& material, const LaneLayout& layout, int grain, LaneState& state,
-                       bool with_sums, kernels::ContactSums& sums) {
+double add_wall_forces(const Wall& wall, const Material& material, const LaneLayout& layout, int grain,
+                       const LaneState& state, double* f, bool with_sums, kernels::ContactSums& sums) {
   const std::int64_t first = layout.first(grain), stride = layout.stride(grain);
   const double reach = 0.5 * material.diameter;
   double total = 0.0;
@@ -23,7 +23,7 @@ double add_wall_forces(const Wall& wall, const Material& material, const LaneLay
     const double force = wall_force(material.k, material.k3, material.gamma, material.diameter, z,
                                     wall.normal.dot(v - wall.velocity));
     for (int c = 0; c < 3; ++c) {
-      state.f[at + c * stride] += force * wall.normal[c];
+      f[at + c * stride] += force * wall.normal[c];
     }
     total += force;
     if (with_sums) {

@@ -17,9 +17,9 @@ struct Wall {
   double force = 0.0; ///< of the material on the wall, against the normal, k d; set by every evaluation
 };
 
-/// Adds one wall's forces on one grain to `state.f` and returns their sum along the normal. The virial (position of the
+/// Adds one wall's forces on one grain to `f` (indexed like the arrays of the state) and returns their sum along the normal. The virial (position of the
 /// contact plane times force) goes to the sums when asked for.
-double add_wall_forces(const Wall& wall, const Material& material, const LaneLayout& layout, int grain, LaneState& state,
-                       bool with_sums, kernels::ContactSums& sums);
+double add_wall_forces(const Wall& wall, const Material& material, const LaneLayout& layout, int grain,
+                       const LaneState& state, double* f, bool with_sums, kernels::ContactSums& sums);
 
 } // namespace boba

@@ -9,40 +9,79 @@
 
 namespace {
 
+using boba::kernels::ContactForce;
+using boba::kernels::ContactNode;
 using boba::kernels::ContactParameters;
 using boba::kernels::ContactRows;
+using boba::kernels::ContactSource;
 using boba::kernels::ContactSums;
 
-/// Squared distances of all candidates: gathers, but no branch, so that the compiler uses the vector unit.
-inline void candidate_distances(const ContactRows& rows, const double* __restrict own_x, const double* __restrict x,
-                                const double* __restrict shift, double* __restrict r2) {
-  const std::int64_t so = rows.own_stride, st = rows.other_stride;
-#pragma GCC ivdep
-  for (std::int64_t e = 0; e < rows.n; ++e) {
-    const std::int32_t i = rows.own[e], j = rows.other[e], image = 3 * rows.image[e];
-    const double dx = own_x[i] - x[j] - shift[image];
-    const double dy = own_x[i + so] - x[j + st] - shift[image + 1];
-    const double dz = own_x[i + 2 * so] - x[j + 2 * st] - shift[image + 2];
-    r2[e] = dx * dx + dy * dy + dz * dz;
+void collect_nodes(const ContactSource* sources, std::int64_t n, const double* x, const double* v, int stride,
+                   ContactNode* nodes) {
+  for (std::int64_t s = 0; s < n; ++s) {
+    const double* xs = x + sources[s].from;
+    const double* vs = v + sources[s].from;
+    ContactNode& node = nodes[sources[s].slot];
+    for (int c = 0; c < 3; ++c) {
+      node.x[c] = xs[c * stride];
+      node.v[c] = vs[c * stride];
+    }
   }
 }
 
-/// The force of one touching pair, added to `f` in list order (a fixed order: results do not depend on threads).
-inline void add_contact(const ContactRows& rows, std::int64_t e, const double* own_x, const double* own_v, const double* x,
-                        const double* v, double* f, const ContactParameters& p, double r2, bool with_sums,
-                        ContactSums& sums) {
-  const std::int64_t i = rows.own[e], j = rows.other[e], so = rows.own_stride, st = rows.other_stride;
+void scatter_forces(const ContactSource* sources, std::int64_t n, const ContactForce* force, double* f, int stride) {
+  for (std::int64_t s = 0; s < n; ++s) {
+    const double* from = force[sources[s].slot].f;
+    double* to = f + sources[s].from;
+    for (int c = 0; c < 3; ++c) {
+      to[c * stride] += from[c];
+    }
+  }
+}
+
+/// Candidates ahead of the present one whose other node is asked for: it lies anywhere, where no hardware prefetch finds it.
+constexpr std::int64_t prefetch_distance = 16;
+
+/// Squared distances of all candidates; those that touch are written down in list order, without a branch.
+inline std::int64_t touching_pairs(const ContactRows& rows, const ContactNode* nodes, const ContactParameters& p,
+                                   double* __restrict r2, std::int32_t* __restrict touching) {
+  const double reach2 = p.diameter * p.diameter;
+  const std::int64_t last = rows.n - 1;
+  std::int64_t n = 0;
+  for (std::int64_t e = 0; e < rows.n; ++e) {
+    __builtin_prefetch(&nodes[rows.other[e + prefetch_distance < last ? e + prefetch_distance : last]]);
+    const double* a = nodes[rows.own[e]].x;
+    const double* b = nodes[rows.other[e]].x;
+    const double* shift = p.shift + 3 * rows.image[e];
+    const double dx = a[0] - b[0] - shift[0];
+    const double dy = a[1] - b[1] - shift[1];
+    const double dz = a[2] - b[2] - shift[2];
+    const double square = dx * dx + dy * dy + dz * dz;
+    r2[n] = square;
+    touching[n] = static_cast<std::int32_t>(e);
+    n += square < reach2;
+  }
+  return n;
+}
+
+/// The force of one touching pair, added to its own node's sum in list order (a fixed order: results do not depend on
+/// threads).
+inline void add_contact(const ContactRows& rows, std::int64_t e, const ContactNode* nodes, ContactForce* force,
+                        const ContactParameters& p, double r2, bool with_sums, ContactSums& sums) {
+  const ContactNode& a = nodes[rows.own[e]];
+  const ContactNode& b = nodes[rows.other[e]];
   const double* shift = p.shift + 3 * rows.image[e];
   const double* shift_velocity = p.shift_velocity + 3 * rows.image[e];
   double d[3], approach = 0.0;
   for (int c = 0; c < 3; ++c) {
-    d[c] = own_x[i + c * so] - x[j + c * st] - shift[c];
-    approach += d[c] * (own_v[i + c * so] - v[j + c * st] - shift_velocity[c]);
+    d[c] = a.x[c] - b.x[c] - shift[c];
+    approach += d[c] * (a.v[c] - b.v[c] - shift_velocity[c]);
   }
   const double r = std::sqrt(r2), inverse_r = 1.0 / r;
   const double s = boba::contact_force(p.k, p.k3, p.gamma, p.diameter, r, approach * inverse_r) * inverse_r;
+  double* f = force[rows.own[e]].f;
   for (int c = 0; c < 3; ++c) {
-    f[i + c * so] += s * d[c];
+    f[c] += s * d[c];
   }
   if (with_sums) {
     const double half = 0.5 * s;
@@ -58,21 +97,11 @@ inline void add_contact(const ContactRows& rows, std::int64_t e, const double* o
   }
 }
 
-void contact_forces(const ContactRows& rows, std::int64_t own_first, const double* x, const double* v, double* f,
-                    const ContactParameters& p, double* scratch, std::int32_t* scratch_index, bool with_sums,
-                    ContactSums& sums) {
-  const double* own_x = x + own_first;
-  const double* own_v = v + own_first;
-  candidate_distances(rows, own_x, x, p.shift, scratch);
-  const double reach2 = p.diameter * p.diameter;
-  std::int64_t n_hits = 0;
-  for (std::int64_t e = 0; e < rows.n; ++e) {
-    scratch_index[n_hits] = static_cast<std::int32_t>(e);
-    n_hits += scratch[e] < reach2;
-  }
-  for (std::int64_t hit = 0; hit < n_hits; ++hit) {
-    const std::int64_t e = scratch_index[hit];
-    add_contact(rows, e, own_x, own_v, x, v, f, p, scratch[e], with_sums, sums);
+void contact_forces(const ContactRows& rows, const ContactNode* nodes, ContactForce* force, const ContactParameters& p,
+                    double* scratch, std::int32_t* scratch_index, bool with_sums, ContactSums& sums) {
+  const std::int64_t n_touching = touching_pairs(rows, nodes, p, scratch, scratch_index);
+  for (std::int64_t t = 0; t < n_touching; ++t) {
+    add_contact(rows, scratch_index[t], nodes, force, p, scratch[t], with_sums, sums);
   }
 }
 

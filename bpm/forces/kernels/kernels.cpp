@@ -13,7 +13,7 @@
 namespace boba::kernels {
 
 extern const KernelTable BOBA_KERNEL_TABLE = {BOBA_STRINGIFY(BOBA_KERNEL_ISA), native_lanes, &volumes_of_nodes,
-                                              &bond_forces, &drift_block,
-                                              &contact_forces, &near_places};
+                                              &bond_forces, &drift_block, &collect_nodes, &contact_forces,
+                                              &scatter_forces, &near_places};
 
 } // namespace boba::kernels

@@ -66,14 +66,28 @@ struct DriftResult {
   double checksum;       ///< a sum of all v^2: not finite when any velocity is not
 };
 
-/// Candidate contacts of one grain, sorted by own node. Offsets count doubles from the start of the arrays
-/// (other) or of the grain's lane (own), to the x component; components are `own_stride`, `other_stride` apart.
+/// Position and velocity of a node that may touch another, copied together on one cache line before the contact pass: in
+/// the lane layout they are spread over six.
+struct alignas(64) ContactNode {
+  double x[3], v[3];
+};
+
+/// Force of all contacts of one node, k d.
+struct ContactForce {
+  double f[3];
+};
+
+/// Where a contact node comes from: `from` counts numbers of a lane array to its x component.
+struct ContactSource {
+  std::int32_t from, slot;
+};
+
+/// Candidate contacts of one grain, sorted by own node. `own` and `other` are slots of ContactNode.
 struct ContactRows {
   std::int64_t n;
   const std::int32_t* own;
   const std::int32_t* other;
   const std::int32_t* image; ///< index into the shift tables
-  std::int32_t own_stride, other_stride;
 };
 
 struct ContactParameters {
@@ -102,11 +116,15 @@ struct KernelTable {
   void (*volumes)(const Network&, const double* x, double* volume, int n_lanes);
   void (*bonds)(const Network&, const BlockArrays&, const BondParameters&, bool many_body, Virial, LaneSums&);
   DriftResult (*drift)(double* x, const double* v, int n_nodes, int n_lanes, const Drift&);
-  /// Adds the contact forces of one grain to `f` (which starts at the grain's lane). `x`, `v` are whole arrays,
-  /// `own_first` the grain's first index in them; `scratch` holds at least rows.n doubles and rows.n ints.
-  void (*contacts)(const ContactRows& rows, std::int64_t own_first, const double* x, const double* v, double* f,
-                   const ContactParameters&, double* scratch, std::int32_t* scratch_index, bool with_sums,
-                   ContactSums&);
+  /// nodes[slot] of every source: its position and velocity from arrays whose components are `stride` apart.
+  void (*collect)(const ContactSource* sources, std::int64_t n, const double* x, const double* v, int stride,
+                  ContactNode* nodes);
+  /// Sums the contact forces of one grain into force[own slot], which must be zero before. `scratch` holds at least rows.n
+  /// doubles and rows.n ints.
+  void (*contacts)(const ContactRows& rows, const ContactNode* nodes, ContactForce* force, const ContactParameters&,
+                   double* scratch, std::int32_t* scratch_index, bool with_sums, ContactSums&);
+  /// Adds force[slot] of every source to where it came from.
+  void (*scatter)(const ContactSource* sources, std::int64_t n, const ContactForce* force, double* f, int stride);
   /// Writes the places in [begin, end) closer than sqrt(reach2) to p into `found`, ascending, and returns their number.
   /// `found` has room for end - begin + 8 numbers.
   std::int32_t (*near_places)(const SortedNodes&, std::int32_t begin, std::int32_t end, const double* p, double reach2,
