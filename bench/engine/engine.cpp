@@ -5,29 +5,34 @@
 #include <benchmark/benchmark.h>
 
 #include <map>
+#include <memory>
 #include <tuple>
 
 namespace boba::bench {
 namespace {
 
-/// Packings are expensive to make: one for each size and alpha, shared by the benchmarks that need it.
-DensePacking& packing_of(int n_grains, int n_nodes, double alpha, int threads) {
-  static std::map<std::tuple<int, int, double, int>, DensePacking> made;
-  const auto key = std::make_tuple(n_grains, n_nodes, alpha, threads);
-  const auto found = made.find(key);
-  return found != made.end() ? found->second
-                             : made.emplace(key, make_dense_packing(n_grains, n_nodes, alpha, threads)).first->second;
+/// One stepper for each size, alpha and number of threads, shared by the benchmarks that need it.
+Stepper& stepper_of(int n_grains, int n_nodes, double alpha, int threads) {
+  static std::map<std::tuple<int, int, double, int>, std::unique_ptr<Stepper>> made;
+  std::unique_ptr<Stepper>& stepper = made[{n_grains, n_nodes, alpha, threads}];
+  if (!stepper) {
+    stepper = std::make_unique<Stepper>(dense_packing(n_grains, n_nodes, alpha), Material{},
+                                        SimulationOptions{.threads = threads});
+    stepper->start();
+  }
+  return *stepper;
 }
 
 /// Arguments: grains, nodes a grain, alpha, threads. One iteration is one step at the paper's fastest rate.
 void dense_shear(benchmark::State& state) {
-  DensePacking& dense = packing_of(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)),
-                                   static_cast<double>(state.range(2)), static_cast<int>(state.range(3)));
-  Stepper& stepper = *dense.stepper;
+  const auto alpha = static_cast<double>(state.range(2));
+  Stepper& stepper = stepper_of(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), alpha,
+                                static_cast<int>(state.range(3)));
+  const double pressure = dense_pressure(alpha);
   const Timings before = stepper.timings();
   for (auto _ : state) {
     stepper.advance(Virial::trace);
-    stepper.move_cell({.shear = 1.024e-3, .dilation = dense.gain * (stepper.pressure() - dense.pressure)});
+    stepper.move_cell(dense_shear_rates(stepper.pressure() - pressure));
   }
   const Timings after = stepper.timings();
   const double nodes = static_cast<double>(stepper.packing().position.size());
@@ -39,19 +44,26 @@ void dense_shear(benchmark::State& state) {
   state.counters["contacts_%"] = 100.0 * (after.contacts - before.contacts) / all;
   state.counters["search_%"] = 100.0 * (after.search - before.search) / all;
   state.counters["drift_%"] = 100.0 * (after.integration - before.integration) / all;
-  state.counters["steps_per_list"] =
-      steps / std::max(1.0, static_cast<double>(after.list_builds - before.list_builds));
+  const ContactList::Counts& listed = stepper.forces().contact_list().counts();
+  const double all_steps = static_cast<double>(after.steps);
+  const double n_grains = stepper.layout().n_grains();
+  state.counters["steps_per_note"] = all_steps * n_grains / static_cast<double>(listed.grains);
+  state.counters["steps_per_pair_search"] =
+      all_steps * static_cast<double>(stepper.forces().contact_list().pairs().size()) / static_cast<double>(listed.pairs);
+  state.counters["nodes_looked_up/step"] = static_cast<double>(listed.nodes) / all_steps;
   state.counters["bytes_per_node"] = static_cast<double>(stepper.bytes()) / nodes;
+  state.counters["candidates/node"] = static_cast<double>(stepper.forces().contact_list().n_candidates()) / nodes;
+  state.counters["contacts/node"] = static_cast<double>(stepper.forces().contact_totals().n_touching) / nodes;
   state.SetLabel(stepper.forces().kernel_table().name);
 }
 
 /// The volume pass alone on the same packing: what alpha != 0 adds before any force is known.
 void node_volumes(benchmark::State& state) {
-  DensePacking& dense = packing_of(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 2.0, 1);
+  Stepper& stepper = stepper_of(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 2.0, 1);
   for (auto _ : state) {
-    dense.stepper->volumes_only();
+    stepper.volumes_only();
   }
-  const double nodes = static_cast<double>(dense.stepper->packing().position.size());
+  const double nodes = static_cast<double>(stepper.packing().position.size());
   state.counters["node_steps"] =
       benchmark::Counter(nodes * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }

@@ -184,7 +184,7 @@ Timings Stepper::timings() const {
   timings.search = forces_.search_seconds;
   timings.integration = integration_seconds_;
   timings.steps = step_;
-  timings.list_builds = forces_.contact_list().n_builds();
+  timings.list_builds = forces_.contact_list().counts().grains;
   return timings;
 }
 

@@ -22,7 +22,7 @@ Totals Stepper::totals() const {
 }
 
 Snapshot Stepper::snapshot(Simulation::Parts parts) const {
-  if ((parts.velocity || parts.force) && !forces_kept_) {
+  if ((parts.force || (parts.velocity && started_)) && !forces_kept_) {
     throw std::logic_error("snapshot: the forces of step " + std::to_string(step_) + " were not kept; an "
                            "observer must ask for it");
   }

@@ -1,205 +1,326 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pairs of grains: which there are, what they list, how long that lasts. Grains are followed in contact_tracking.cpp.
 #include "bpm/forces/contact_list.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <set>
+#include <map>
 #include <stdexcept>
+#include <tuple>
 
 namespace boba {
 
-ContactList::ContactList(const LaneLayout& layout, double diameter, double skin)
-    : layout_(layout), diameter_(diameter), skin_(skin), grids_(layout.n_grains()), bounds_(layout.n_grains()),
-      neighbours_(layout.n_grains()), rows_(layout.n_grains()), pairs_(layout.n_grains()),
-      first_slot_(layout.n_grains() + 1, 0), n_slots_(layout.n_grains(), 0), sources_(layout.blocks().size()) {
-  for (int g = 0; g < layout.n_grains(); ++g) {
-    first_node_.push_back(static_cast<std::int32_t>(n_nodes_));
-    n_nodes_ += layout.n_nodes(g);
-  }
-  slot_of_node_.assign(n_nodes_, -1);
-  if (layout.size() > std::numeric_limits<std::int32_t>::max()) {
-    throw std::invalid_argument("contact list: the packing has more than 7e8 nodes, the most that one process handles");
+namespace {
+
+/// Margin of the list of neighbouring grains, d.
+constexpr double neighbour_margin = 1.0;
+
+Bounds widened(const Bounds& bounds, double by) {
+  return {bounds.low - Vector3::Constant(by), bounds.high + Vector3::Constant(by)};
+}
+
+template <class Visit> void for_each_corner(const Bounds& bounds, Visit&& visit) {
+  for (int corner = 0; corner < 8; ++corner) {
+    Vector3 x;
+    for (int axis = 0; axis < 3; ++axis) {
+      x[axis] = (corner >> axis & 1) != 0 ? bounds.high[axis] : bounds.low[axis];
+    }
+    visit(x);
   }
 }
 
-void ContactList::sort_into_grids(const LaneState& state) {
-  reference_ = state.x;
+Bounds mapped(const Bounds& bounds, const GrainFrame& frame) {
+  Bounds result;
+  for_each_corner(bounds, [&](const Vector3& x) {
+    result.low = result.low.cwiseMin(frame(x));
+    result.high = result.high.cwiseMax(frame(x));
+  });
+  return result;
+}
+
+bool contains(const Bounds& bounds, const Vector3& x) {
+  return (x - bounds.low).minCoeff() >= 0.0 && (bounds.high - x).minCoeff() >= 0.0;
+}
+
+Vector3 lattice_vector(const Box& box, const ImageVector& n) { return box.h() * Vector3(n.a, n.b, n.c); }
+
+} // namespace
+
+ContactList::ContactList(const LaneLayout& layout, const kernels::KernelTable& table, double diameter, double skin)
+    : layout_(layout), table_(table), diameter_(diameter), skin_(skin), skin_between_(between_share * skin),
+      place_(layout.size(), 0.0f), grains_(layout.n_grains()), sides_(layout.n_grains()) {
+  for (const Block& block : layout.blocks()) {
+    if (static_cast<std::int64_t>(block.n_nodes) * block.n_lanes > std::numeric_limits<std::int32_t>::max()) {
+      throw std::invalid_argument("contact list: a grain has more than 2.6e8 nodes, the most that are handled");
+    }
+  }
+}
+
+bool ContactList::update(const LaneState& state, const Box& box, const Networks& network_of_grain) {
+  const double stretch = 1.0 - (cell_since_tracking_ - Matrix3::Identity()).norm();
+  if (built_ && stretch * guaranteed_ - 2.0 * crept_ >= diameter_) {
+    return false;
+  }
+  track(state);
+  if (!built_ || neighbour_guarantee(box) < reach_between()) {
+    find_neighbours(box);
+  }
+  double guaranteed = neighbour_guarantee(box);
+  const int n_pairs = static_cast<int>(pairs_.size());
+  std::int64_t searched = 0;
+#pragma omp parallel for schedule(dynamic, 4) reduction(min : guaranteed) reduction(+ : searched)
+  for (int p = 0; p < n_pairs; ++p) {
+    ContactPair& pair = pairs_[p];
+    if (!pair.searched || grains_[pair.a].anew || grains_[pair.b].anew || guarantee(pair, box) < diameter_ + reserve()) {
+      search(pair, box, *network_of_grain[pair.a]);
+      ++searched;
+    } else {
+      add_moved(pair, *network_of_grain[pair.a]);
+    }
+    guaranteed = std::min(guaranteed, guarantee(pair, box));
+  }
+  counts_.pairs += searched;
 #pragma omp parallel for schedule(dynamic, 1)
   for (int g = 0; g < layout_.n_grains(); ++g) {
-    thread_local std::vector<Vector3> nodes;
-    nodes.resize(layout_.n_nodes(g));
-    Bounds bounds;
-    for (int node = 0; node < layout_.n_nodes(g); ++node) {
-      for (int c = 0; c < 3; ++c) {
-        nodes[node][c] = state.x[layout_.index(g, node, c)];
-      }
-      bounds.low = bounds.low.cwiseMin(nodes[node]);
-      bounds.high = bounds.high.cwiseMax(nodes[node]);
-    }
-    bounds_[g] = bounds;
-    grids_[g] = GrainGrid(nodes, bounds, diameter_ + skin_);
+    list_nodes(g);
   }
-}
-
-void ContactList::collect_images() {
-  std::set<ImageVector> distinct = {ImageVector{}};
-  for (const std::vector<NeighbourGrain>& list : neighbours_) {
-    for (const NeighbourGrain& neighbour : list) {
-      const ImageVector& n = neighbour.image;
-      distinct.insert(n);
-      distinct.insert({-n.a, -n.b, -n.c});
-    }
+  for (ContactPair& pair : pairs_) {
+    pair.changed = false;
   }
-  images_.assign(distinct.begin(), distinct.end());
-}
-
-std::int32_t ContactList::image_index(const ImageVector& image) const {
-  return static_cast<std::int32_t>(std::lower_bound(images_.begin(), images_.end(), image) - images_.begin());
-}
-
-void ContactList::build(const LaneState& state, const Box& box,
-                        const std::vector<const NetworkData*>& network_of_grain) {
-  sort_into_grids(state);
-  const int n_grains = layout_.n_grains();
-#pragma omp parallel for schedule(dynamic, 8)
-  for (int g = 0; g < n_grains; ++g) {
-    // Nodes with a new reference may leave their grain's bounds by the margin.
-    neighbours_[g] = neighbour_grains(g, bounds_, box, diameter_ + skin_ + 2.0 * bounds_margin);
+  for (TrackedGrain& grain : grains_) {
+    counts_.grains += grain.anew ? 1 : 0;
+    counts_.nodes += static_cast<std::int64_t>(grain.moved.size());
+    grain.anew = false;
+    grain.moved.clear();
   }
-  collect_images();
-  origin_ = box.origin();
-  cell_ = box.h();
-  deformation_ = Matrix3::Identity();
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int g = 0; g < n_grains; ++g) {
-    build_rows(g, *network_of_grain[g]);
-  }
-  assign_slots();
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int g = 0; g < n_grains; ++g) {
-    set_rows(g, pairs_[g]);
-    pairs_[g] = {};
-  }
-  n_moved_ = 0;
-  bound_ = 0.0;
+  guaranteed_ = guaranteed;
+  crept_ = 0.0;
+  cell_since_tracking_ = Matrix3::Identity();
   built_ = true;
-  ++n_builds_;
-}
-
-ContactList::SortedPair ContactList::pair_of(int grain, int node, int other, int other_node,
-                                             std::int32_t image) const {
-  return {first_node_[grain] + node, first_node_[other] + other_node, image};
-}
-
-void ContactList::build_rows(int grain, const NetworkData& network) {
-  thread_local std::vector<CandidatePair> pairs;
-  std::vector<SortedPair>& sorted = pairs_[grain];
-  const std::vector<NeighbourGrain>& neighbours = neighbours_[grain];
-  pairs.clear();
-  sorted.clear();
-  for (int k = 0; k < static_cast<int>(neighbours.size()); ++k) {
-    const ImageVector& n = neighbours[k].image;
-    add_pairs_between(grids_[grain], grids_[neighbours[k].other], cell_ * Vector3(n.a, n.b, n.c), k, pairs);
-  }
-  add_pairs_inside(grids_[grain], network, pairs);
-  for (const CandidatePair& pair : pairs) {
-    const bool inside = pair.neighbour < 0;
-    const NeighbourGrain neighbour = inside ? NeighbourGrain{grain, {}} : neighbours[pair.neighbour];
-    const ImageVector& n = neighbour.image;
-    if (inside || neighbour.other != grain || !network.bonded_across(pair.own, pair.node, {n.a, n.b, n.c})) {
-      sorted.push_back(pair_of(grain, pair.own, neighbour.other, pair.node, image_index(neighbour.image)));
-    }
-  }
-  std::sort(sorted.begin(), sorted.end());
-}
-
-void ContactList::assign_slots() {
-  const auto other_node = [](const SortedPair& a, const SortedPair& b) { return a.own != b.own; };
-  std::fill(slot_of_node_.begin(), slot_of_node_.end(), -1);
-  std::fill(n_slots_.begin(), n_slots_.end(), 0);
-  for (int g = 0; g < layout_.n_grains(); ++g) {
-    const std::vector<SortedPair>& pairs = pairs_[g];
-    const auto needed = pairs.empty() ? 0 : 1 + std::transform_reduce(pairs.begin() + 1, pairs.end(), pairs.begin(), 0,
-                                                                      std::plus<>(), other_node);
-    first_slot_[g + 1] = first_slot_[g] + std::min(needed + needed / 4 + 16, layout_.n_nodes(g));
-  }
-  node_of_slot_.assign(first_slot_.back(), -1);
-  for (std::size_t b = 0; b < sources_.size(); ++b) {
-    std::vector<kernels::ContactSource>& sources = sources_[b];
-    sources.clear();
-    for (const int g : layout_.blocks()[b].grain) {
-      if (g >= 0) {
-        add_slots(g, pairs_[g]);
-      }
-    }
-    std::sort(sources.begin(), sources.end(), by_place);
-  }
-}
-
-/// Gives slots to those of a grain's own nodes that have none. False when there is no room left.
-bool ContactList::add_slots(int grain, const std::vector<SortedPair>& pairs) {
-  for (const SortedPair& pair : pairs) {
-    if (slot_of_node_[pair.own] >= 0) {
-      continue;
-    }
-    const std::int32_t slot = first_slot_[grain] + n_slots_[grain];
-    if (slot == first_slot_[grain + 1]) {
-      return false;
-    }
-    ++n_slots_[grain];
-    slot_of_node_[pair.own] = slot;
-    node_of_slot_[slot] = pair.own;
-    const std::int64_t from = layout_.index(grain, pair.own - first_node_[grain], 0);
-    sources_[layout_.block_of(grain)].push_back({static_cast<std::int32_t>(from), slot});
-  }
   return true;
-}
-
-void ContactList::set_rows(int grain, const std::vector<SortedPair>& sorted) {
-  Rows& rows = rows_[grain];
-  rows.own.resize(sorted.size());
-  rows.other.resize(sorted.size());
-  rows.image.resize(sorted.size());
-  for (std::size_t e = 0; e < sorted.size(); ++e) {
-    rows.own[e] = slot_of_node_[sorted[e].own];
-    rows.other[e] = slot_of_node_[sorted[e].other];
-    rows.image[e] = sorted[e].image;
-  }
 }
 
 void ContactList::note_motion(const Matrix3& cell_map, double displacement) {
   if (built_) {
-    deformation_ = cell_map * deformation_;
-    bound_ = bound_ * (1.0 + (cell_map - Matrix3::Identity()).norm()) + displacement;
+    cell_since_tracking_ = cell_map * cell_since_tracking_;
+    cell_since_neighbours_ = cell_map * cell_since_neighbours_;
+    crept_ = crept_ * (1.0 + (cell_map - Matrix3::Identity()).norm()) + displacement;
   }
 }
 
-kernels::ContactRows ContactList::rows(int grain) const {
-  const Rows& rows = rows_[grain];
-  return {static_cast<std::int64_t>(rows.own.size()), rows.own.data(), rows.other.data(), rows.image.data()};
+void ContactList::find_neighbours(const Box& box) {
+  const int n_grains = layout_.n_grains();
+  std::vector<Bounds> bounds(n_grains);
+  for (int g = 0; g < n_grains; ++g) {
+    TrackedGrain& grain = grains_[g];
+    bounds[g] = widened(mapped(widened(grain.grid.bounds(), bounds_margin), grain.frame), grain.stray);
+    grain.neighbour_frame = grain.frame;
+  }
+  std::vector<std::vector<NeighbourGrain>> neighbours(n_grains);
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int g = 0; g < n_grains; ++g) {
+    neighbours[g] = neighbour_grains(g, bounds, box, reach_between() + neighbour_margin);
+    neighbours[g].push_back({g, {}});
+    std::erase_if(neighbours[g], [&](const NeighbourGrain& other) {
+      return other.other < g || (other.other == g && other.image < ImageVector{});
+    });
+    std::sort(neighbours[g].begin(), neighbours[g].end(), [](const NeighbourGrain& x, const NeighbourGrain& y) {
+      return std::tie(x.other, x.image) < std::tie(y.other, y.image);
+    });
+  }
+  std::map<std::tuple<int, int, ImageVector>, ContactPair> known;
+  for (ContactPair& pair : pairs_) {
+    known[{pair.a, pair.b, pair.image}] = std::move(pair);
+  }
+  pairs_.clear();
+  sides_.assign(n_grains, {});
+  for (int g = 0; g < n_grains; ++g) {
+    for (const NeighbourGrain& other : neighbours[g]) {
+      const auto old = built_ ? known.find({g, other.other, other.image}) : known.end();
+      const int index = static_cast<int>(pairs_.size());
+      pairs_.push_back(old != known.end() ? std::move(old->second) : ContactPair{g, other.other, other.image});
+      sides_[g].push_back({index, 1.0});
+      sides_[other.other].push_back({index, -1.0});
+    }
+  }
+  for (ContactPair& pair : pairs_) {
+    pair.changed = true;
+  }
+  cell_since_neighbours_ = Matrix3::Identity();
+}
+
+/// Distance that the nodes of grains which are not neighbours keep: they were farther apart than the reach when the
+/// neighbours were found, the cell may have shortened that, and each grain may have moved beyond the cell's motion.
+double ContactList::neighbour_guarantee(const Box& box) const {
+  const Matrix3& cell = cell_since_neighbours_;
+  const GrainFrame with_cell = {cell, box.origin() - cell * box.origin()};
+  double farthest = 0.0;
+  for (const TrackedGrain& grain : grains_) {
+    const GrainFrame carried = with_cell.after(grain.neighbour_frame);
+    for_each_corner(widened(grain.grid.bounds(), bounds_margin), [&](const Vector3& x) {
+      farthest = std::max(farthest, (grain.frame(x) - carried(x)).norm() + grain.stray);
+    });
+  }
+  const double stretch = 1.0 - (cell - Matrix3::Identity()).norm();
+  return stretch * (reach_between() + neighbour_margin) - 2.0 * farthest;
+}
+
+GrainFrame ContactList::second_frame(const ContactPair& pair, const Box& box) const {
+  return grains_[pair.b].frame.displaced(lattice_vector(box, pair.image));
+}
+
+/// Distance that the pair's unlisted nodes keep at present.
+///
+/// A pair of nodes at the distance s >= diameter + skin when searched is now at least s (1 - e) - R - the two strays, with
+/// e the shortening of b's frame since then and R the largest relative displacement of the two frames where the grains meet.
+double ContactList::guarantee(const ContactPair& pair, const Box& box) const {
+  const TrackedGrain &a = grains_[pair.a], &b = grains_[pair.b];
+  const GrainFrame moved_b = second_frame(pair, box).after(pair.frame_b.inverse());
+  const double e = shortening(moved_b.linear);
+  if (pair.inside()) {
+    return reach_inside() * (1.0 - e) - 2.0 * a.stray;
+  }
+  const GrainFrame moved_a = a.frame.after(pair.frame_a.inverse());
+  double slid = 0.0;
+  for_each_corner(pair.zone, [&](const Vector3& x) { slid = std::max(slid, (moved_a(x) - moved_b(x)).norm()); });
+  return reach_between() * (1.0 - e) - slid - a.stray - b.stray;
+}
+
+/// Radius that finds all nodes closer than the reach in space, where a frame has mapped the places that are searched.
+double ContactList::radius_in(const GrainFrame& frame) const {
+  return reach_between() / (1.0 - shortening(frame.linear));
+}
+
+void ContactList::search(ContactPair& pair, const Box& box, const NetworkData& network) {
+  const TrackedGrain &a = grains_[pair.a], &b = grains_[pair.b];
+  pair.frame_a = a.frame;
+  pair.frame_b = second_frame(pair, box);
+  pair.searched = true;
+  pair.changed = true;
+  pair.candidates.clear();
+  if (pair.inside()) {
+    add_pairs_inside(a.grid, network, reach_inside(), pair.candidates);
+  } else {
+    const Bounds of_a = mapped(widened(a.grid.bounds(), bounds_margin), pair.frame_a);
+    const Bounds of_b = mapped(widened(b.grid.bounds(), bounds_margin), pair.frame_b);
+    pair.bounds_a = widened(of_a, reach_between());
+    pair.bounds_b = widened(of_b, reach_between());
+    pair.zone = {of_a.low.cwiseMax(pair.bounds_b.low), of_a.high.cwiseMin(pair.bounds_b.high)};
+    if ((pair.zone.high - pair.zone.low).minCoeff() > 0.0) {
+      add_pairs_between(a.grid, b.grid, pair.frame_a.inverse().after(pair.frame_b), radius_in(pair.frame_a),
+                        pair.candidates);
+    } else { // nothing to list
+      pair.zone = of_a;
+    }
+  }
+  finish(pair, network, 0);
+}
+
+void ContactList::add_moved(ContactPair& pair, const NetworkData& network) {
+  const std::size_t before = pair.candidates.size();
+  pair.inside() ? add_moved_inside(pair, network) : add_moved_between(pair);
+  if (pair.candidates.size() > before) {
+    pair.changed = true;
+    finish(pair, network, before);
+  }
+}
+
+void ContactList::add_moved_inside(ContactPair& pair, const NetworkData& network) const {
+  thread_local std::vector<std::int32_t> nodes;
+  for (const std::int32_t i : grains_[pair.a].moved) {
+    nodes.clear();
+    add_nodes_near(grains_[pair.a].grid, place(pair.a, i), reach_inside(), nodes);
+    for (const std::int32_t j : nodes) {
+      if (j != i && !std::binary_search(network.partners_begin(i), network.partners_end(i), j)) {
+        pair.candidates.push_back({std::min(i, j), std::max(i, j)});
+      }
+    }
+  }
+}
+
+void ContactList::add_moved_between(ContactPair& pair) const {
+  thread_local std::vector<std::int32_t> nodes;
+  const TrackedGrain &a = grains_[pair.a], &b = grains_[pair.b];
+  for (const std::int32_t i : a.moved) {
+    const Vector3 x = pair.frame_a(place(pair.a, i));
+    if (contains(pair.bounds_b, x)) {
+      nodes.clear();
+      add_nodes_near(b.grid, pair.frame_b.inverse()(x), radius_in(pair.frame_b), nodes);
+      for (const std::int32_t j : nodes) {
+        pair.candidates.push_back({i, j});
+      }
+    }
+  }
+  for (const std::int32_t j : b.moved) {
+    const Vector3 x = pair.frame_b(place(pair.b, j));
+    if (contains(pair.bounds_a, x)) {
+      nodes.clear();
+      add_nodes_near(a.grid, pair.frame_a.inverse()(x), radius_in(pair.frame_a), nodes);
+      for (const std::int32_t i : nodes) {
+        pair.candidates.push_back({i, j});
+      }
+    }
+  }
+}
+
+/// Sorts the candidates from `sorted` on into those before, and strikes out what is bonded or stands twice.
+void ContactList::finish(ContactPair& pair, const NetworkData& network, std::size_t sorted) {
+  std::vector<kernels::NodePair>& list = pair.candidates;
+  const auto before = [](const kernels::NodePair& x, const kernels::NodePair& y) {
+    const auto key = [](const kernels::NodePair& nodes) {
+      return static_cast<std::uint64_t>(nodes.i) << 32 | static_cast<std::uint32_t>(nodes.j);
+    };
+    return key(x) < key(y);
+  };
+  const auto middle = list.begin() + static_cast<std::ptrdiff_t>(sorted);
+  std::sort(middle, list.end(), before);
+  std::inplace_merge(list.begin(), middle, list.end(), before);
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  if (pair.a == pair.b && !pair.inside()) {
+    const Eigen::Vector3i n(pair.image.a, pair.image.b, pair.image.c);
+    std::erase_if(list, [&](const kernels::NodePair& nodes) { return network.bonded_across(nodes.i, nodes.j, n); });
+  }
+}
+
+void ContactList::list_nodes(int g) {
+  const auto changed = [&](const ContactSide& side) { return pairs_[side.pair].changed; };
+  if (std::none_of(sides_[g].begin(), sides_[g].end(), changed)) {
+    return;
+  }
+  thread_local std::vector<std::uint64_t> in_list; // one bit a node
+  in_list.assign((layout_.n_nodes(g) + 63) / 64, 0);
+  for (const ContactSide& side : sides_[g]) {
+    for (const kernels::NodePair& nodes : pairs_[side.pair].candidates) {
+      const std::int32_t node = side.sign > 0.0 ? nodes.i : nodes.j;
+      in_list[node / 64] |= std::uint64_t{1} << (node % 64);
+    }
+  }
+  std::vector<std::int32_t>& listed = grains_[g].listed;
+  listed.clear();
+  for (std::size_t word = 0; word < in_list.size(); ++word) {
+    for (std::uint64_t left = in_list[word]; left != 0; left &= left - 1) {
+      listed.push_back(static_cast<std::int32_t>(64 * word) + std::countr_zero(left));
+    }
+  }
 }
 
 std::int64_t ContactList::n_candidates() const {
   std::int64_t n = 0;
-  for (const Rows& rows : rows_) {
-    n += static_cast<std::int64_t>(rows.own.size());
+  for (const ContactPair& pair : pairs_) {
+    n += static_cast<std::int64_t>(pair.candidates.size());
   }
   return n;
 }
 
 std::size_t ContactList::bytes() const {
-  std::size_t bytes = reference_.capacity() * sizeof(double) +
-                      (slot_of_node_.capacity() + node_of_slot_.capacity()) * sizeof(std::int32_t);
-  for (const std::vector<kernels::ContactSource>& sources : sources_) {
-    bytes += sources.capacity() * sizeof(kernels::ContactSource);
+  std::size_t bytes = place_.capacity() * sizeof(float);
+  for (const TrackedGrain& grain : grains_) {
+    bytes += grain.grid.bytes() + grain.listed.capacity() * sizeof(std::int32_t);
   }
-  for (const GrainGrid& grid : grids_) {
-    bytes += grid.bytes();
-  }
-  for (const Rows& rows : rows_) {
-    bytes += (rows.own.capacity() + rows.other.capacity() + rows.image.capacity()) * sizeof(std::int32_t);
+  for (const ContactPair& pair : pairs_) {
+    bytes += pair.candidates.capacity() * sizeof(kernels::NodePair) + pair.touches.capacity() * sizeof(kernels::Touch);
   }
   return bytes;
 }

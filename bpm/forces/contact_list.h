@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/forces/contact_pair.h"
 #include "bpm/forces/contact_search.h"
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/forces/network_data.h"
@@ -11,21 +12,22 @@
 
 namespace boba {
 
-/// Candidate contacts of every grain.
+/// Candidate contacts of every pair of grains.
 ///
-/// Each node has a reference position, co-moving with the cell since the list was built, and all pairs whose references are
-/// closer than diameter + skin are listed. A node that leaves its reference by nearly half the skin gets a new one,
-/// and its pairs are added: a few fast nodes cost a few look-ups. Only when many nodes have done so, or the cell
-/// has deformed by several per cent, everything is built anew.
+/// A grain's nodes are noted once by their places in its frame, an affine map that is fitted to the grain again and again:
+/// what is left is how far a node strays from where the frame puts it. A pair of grains keeps its candidates as long as the
+/// two frames' relative motion where they meet, the strays of both, and what the nodes may have moved since they were last
+/// looked at are less than the skin together. A node that strays far gets a new place and is looked up once; a pair whose
+/// grains have slid past each other is searched anew from the same places; only a grain that has changed its shape
+/// notes all its places anew.
 ///
-/// The list of a grain is sorted by own node, then by the other node and its image: an order that follows from the state
-/// alone. Nodes with a candidate have a slot in a compact array that the contact pass reads instead of the lanes.
-/// Since candidates that do not touch add nothing, forces are bit for bit the same whether the list was built at this step
+/// Candidates are sorted by nodes, pairs by grains and image: an order that follows from the state alone.
+/// Since candidates that do not touch add nothing, forces are bit for bit the same whether a pair was searched at this step
 /// or earlier, by one thread or by many. (Nothing of the list needs to be stored in a checkpoint.)
 /// Source: docs/decisions/contacts.md.
 class ContactList {
 public:
-  ContactList(const LaneLayout& layout, double diameter, double skin);
+  ContactList(const LaneLayout& layout, const kernels::KernelTable& table, double diameter, double skin);
 
   /// Makes sure that no contact of the present state is missing; true when the list changed. `network_of_grain` as given
   /// at the first call.
@@ -35,84 +37,83 @@ public:
   /// The cell's vectors or the state changed in a way that note_motion was not told of.
   void invalidate() { built_ = false; }
 
-  /// Candidates of one grain, by slots.
-  kernels::ContactRows rows(int grain) const;
-  /// The slots of a block's nodes and where in the lane arrays they come from.
-  std::span<const kernels::ContactSource> sources(int block) const { return sources_[block]; }
-  /// Slots of one grain are [first_slot, first_slot + n_slots).
-  std::int32_t first_slot(int grain) const { return first_slot_[grain]; }
-  std::int32_t n_slots(int grain) const { return n_slots_[grain]; }
-  std::int32_t slot_capacity() const { return first_slot_.back(); }
-  const std::vector<ImageVector>& images() const { return images_; }
+  std::vector<ContactPair>& pairs() { return pairs_; }
+  const std::vector<ContactPair>& pairs() const { return pairs_; }
+  /// The pairs a grain takes part in, in the order in which it sums them up.
+  std::span<const ContactSide> sides(int grain) const { return sides_[grain]; }
+  /// Nodes of a grain that are in any candidate, ascending.
+  std::span<const std::int32_t> listed(int grain) const { return grains_[grain].listed; }
+
   std::int64_t n_candidates() const;
-  std::int64_t n_builds() const { return n_builds_; }
-  std::int64_t n_refreshed_nodes() const { return n_refreshed_; }
+  /// How often a grain's nodes were noted anew, a pair searched, and a single node looked up.
+  struct Counts {
+    std::int64_t grains = 0, pairs = 0, nodes = 0;
+  };
+  const Counts& counts() const { return counts_; }
   std::size_t bytes() const;
 
 private:
-  /// How far a node with a new reference may be outside its grain's bounds at the build before all is built anew, d.
+  struct TrackedGrain {
+    GrainFrame frame;           ///< from noted places to space
+    GrainFrame neighbour_frame; ///< the same when the grain's neighbours were found
+    GrainGrid grid;             ///< over the noted places, new ones inserted
+    Matrix3 inverse_moments = Matrix3::Identity(); ///< of sum X (x) X over the nodes as first noted
+    double stray = 0.0;         ///< largest distance of a node from where the frame puts it, d
+    std::vector<std::int32_t> moved; ///< nodes with a new place since the pairs were last brought up to date
+    int n_moved = 0;            ///< since all were noted
+    bool anew = false;          ///< all were noted since the pairs were last brought up to date
+    std::vector<std::int32_t> listed;
+  };
+  using Networks = std::vector<const NetworkData*>;
+
+  double reach_between() const { return diameter_ + skin_between_; }
+  double reach_inside() const { return diameter_ + skin_; }
+  double reserve() const { return reserve_share * skin_; }
+
+  /// Share of the skin that is left for motion between two looks at the grains.
+  static constexpr double reserve_share = 0.3;
+  /// Share of the skin beyond which a node that strays gets a new place.
+  static constexpr double far_share = 0.3;
+  /// Skin between grains over the skin inside a grain, where nodes are denser and move less.
+  static constexpr double between_share = 1.6;
+  /// How far a node with a new place may be outside its grain's bounds before all are noted anew, d.
   static constexpr double bounds_margin = 0.5;
+  /// Most that a frame may shorten before all is noted anew.
+  static constexpr double largest_shortening = 0.05;
 
-  struct Rows {
-    std::vector<std::int32_t> own, other, image;
-  };
-  /// A candidate by numbers of nodes in the packing; sorted by the members in this order.
-  struct SortedPair {
-    std::int32_t own, other, image;
-    auto operator<=>(const SortedPair&) const = default;
-  };
-  /// By place in the lane arrays, so that a cache line is read once for all lanes.
-  static bool by_place(const kernels::ContactSource& a, const kernels::ContactSource& b) { return a.from < b.from; }
-  struct MovedNode {
-    std::int32_t grain, node;
-  };
-  /// Nodes farther than a threshold from their reference, and the largest distance of the others.
-  struct Displacements {
-    std::vector<MovedNode> moved;
-    double largest_rest = 0.0;
-  };
+  // contact_list.cpp: pairs
+  void find_neighbours(const Box& box);
+  double neighbour_guarantee(const Box& box) const;
+  double radius_in(const GrainFrame& frame) const;
+  void search(ContactPair& pair, const Box& box, const NetworkData& network);
+  void add_moved(ContactPair& pair, const NetworkData& network);
+  void add_moved_inside(ContactPair& pair, const NetworkData& network) const;
+  void add_moved_between(ContactPair& pair) const;
+  static void finish(ContactPair& pair, const NetworkData& network, std::size_t sorted);
+  double guarantee(const ContactPair& pair, const Box& box) const;
+  void list_nodes(int grain);
+  GrainFrame second_frame(const ContactPair& pair, const Box& box) const;
 
-  void build(const LaneState& state, const Box& box, const std::vector<const NetworkData*>& network_of_grain);
-  void sort_into_grids(const LaneState& state);
-  void collect_images();
-  std::int32_t image_index(const ImageVector& image) const;
-  void build_rows(int grain, const NetworkData& network);
-  SortedPair pair_of(int grain, int node, int other, int other_node, std::int32_t image) const;
-  void assign_slots();
-  bool add_slots(int grain, const std::vector<SortedPair>& pairs);
-  void set_rows(int grain, const std::vector<SortedPair>& sorted);
-
-  double allowed_displacement() const;
-  Displacements measure(const LaneState& state, double threshold) const;
-  bool refresh(const std::vector<MovedNode>& moved, const LaneState& state,
-               const std::vector<const NetworkData*>& network_of_grain);
-  bool set_reference(const MovedNode& moved, const LaneState& state);
-  Vector3 reference_of(int grain, int node) const;
-  void find_pairs(const MovedNode& moved, const NetworkData& network,
-                  std::vector<std::vector<SortedPair>>& found) const;
-  void merge_rows(int grain, std::vector<SortedPair>& added);
+  // contact_tracking.cpp: grains
+  void track(const LaneState& state);
+  void track_block(int b, const LaneState& state);
+  void note_all(int grain, const LaneState& state);
+  bool note_moved(int grain, const LaneState& state);
+  bool out_of_shape(const TrackedGrain& grain, int n_nodes) const;
+  Vector3 place(int grain, int node) const;
 
   const LaneLayout& layout_;
-  double diameter_, skin_;
+  const kernels::KernelTable& table_;
+  double diameter_, skin_, skin_between_;
   bool built_ = false;
-  Vector3 origin_ = Vector3::Zero();
-  Matrix3 cell_ = Matrix3::Identity();        ///< the cell matrix when the list was built
-  Matrix3 deformation_ = Matrix3::Identity(); ///< of the cell since then
-  double bound_ = 0.0;                        ///< on any node's distance from its reference, d
-  AlignedVector reference_;                   ///< in the frame of the cell when the list was built, lane layout
-  std::vector<GrainGrid> grids_; ///< over the references at the build, new ones inserted
-  std::vector<Bounds> bounds_;
-  std::vector<std::vector<NeighbourGrain>> neighbours_;
-  std::vector<ImageVector> images_; ///< sorted; with n also -n
-  std::vector<Rows> rows_;
-  std::vector<std::int32_t> first_node_;               ///< per grain, in the packing
-  std::vector<std::vector<SortedPair>> pairs_;         ///< of a build, until they have slots
-  std::vector<std::int32_t> first_slot_;               ///< per grain, and the end; with room for new references
-  std::vector<std::int32_t> n_slots_;                  ///< per grain
-  std::vector<std::int32_t> node_of_slot_, slot_of_node_; ///< node in the packing; -1 for a node without candidates
-  std::vector<std::vector<kernels::ContactSource>> sources_; ///< per block
-  std::int64_t n_moved_ = 0, n_nodes_ = 0; ///< new references since the build; all nodes
-  std::int64_t n_builds_ = 0, n_refreshed_ = 0;
+  Matrix3 cell_since_tracking_ = Matrix3::Identity(), cell_since_neighbours_ = Matrix3::Identity();
+  double guaranteed_ = 0.0; ///< all pairs of nodes that are not listed were farther apart when the grains were last tracked, d
+  double crept_ = 0.0;      ///< bound on any node's motion since then beyond the cell's, d
+  std::vector<float, boost::alignment::aligned_allocator<float, 64>> place_; ///< X, lane layout, d
+  std::vector<TrackedGrain> grains_;
+  std::vector<ContactPair> pairs_; ///< sorted by a, b, image
+  std::vector<std::vector<ContactSide>> sides_;
+  Counts counts_;
 };
 
 } // namespace boba

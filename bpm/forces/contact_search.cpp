@@ -78,85 +78,106 @@ template <class Visit> void for_each_row(const GrainGrid& grid, const CellRange&
 /// Collects the places of a grid's nodes near a point, row by row.
 class NearPlaces {
 public:
-  NearPlaces(const GrainGrid& grid)
-      : kernel_(kernels::best_table().near_places), columns_(grid.columns()), reach2_(grid.reach() * grid.reach()),
+  NearPlaces(const GrainGrid& grid, double radius)
+      : kernel_(kernels::best_table().near_places), columns_(grid.columns()), radius2_(radius * radius),
         found_(grid.size() + 8) {}
 
   void clear() { n_ = 0; }
   void add_row(std::int32_t begin, std::int32_t end, const Vector3& x) {
-    n_ += kernel_(columns_, begin, end, x.data(), reach2_, found_.data() + n_);
+    n_ += kernel_(columns_, begin, end, x.data(), radius2_, found_.data() + n_);
   }
   std::span<const std::int32_t> places() const { return std::span(found_).first(n_); }
 
 private:
   decltype(kernels::KernelTable::near_places) kernel_;
   kernels::SortedNodes columns_;
-  double reach2_;
+  double radius2_;
   std::vector<std::int32_t> found_;
   std::int32_t n_ = 0;
 };
 
+/// Bounds of a box after an affine map.
+Bounds mapped(const Bounds& bounds, const GrainFrame& map) {
+  Bounds result;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vector3 x;
+    for (int axis = 0; axis < 3; ++axis) {
+      x[axis] = (corner >> axis & 1) != 0 ? bounds.high[axis] : bounds.low[axis];
+    }
+    result.low = result.low.cwiseMin(map(x));
+    result.high = result.high.cwiseMax(map(x));
+  }
+  return result;
+}
+
 } // namespace
 
-void add_pairs_between(const GrainGrid& own, const GrainGrid& other, const Vector3& shift, int neighbour,
-                       std::vector<CandidatePair>& pairs) {
-  const Vector3 margin = Vector3::Constant(own.reach());
-  const CellRange overlap = cells_around(other, own.bounds().low - margin - shift, own.bounds().high + margin - shift);
-  NearPlaces near(own);
-  for_each_row(other, overlap, [&](std::int32_t begin, std::int32_t end) {
-    for (std::int32_t theirs = begin; theirs < end; ++theirs) {
-      const Vector3 x = other.position(theirs) + shift;
-      if (!own.near(x)) {
-        continue;
-      }
-      near.clear();
-      for_each_row(own, cells_around(own, x - margin, x + margin),
-                   [&](std::int32_t first, std::int32_t last) { near.add_row(first, last, x); });
-      for (const std::int32_t ours : near.places()) {
-        pairs.push_back({own.node(ours), neighbour, other.node(theirs)});
-      }
+void add_pairs_between(const GrainGrid& a, const GrainGrid& b, const GrainFrame& b_to_a, double radius,
+                       std::vector<kernels::NodePair>& pairs) {
+  const Vector3 margin = Vector3::Constant(radius);
+  // Inserted places of a may be one cell outside its bounds.
+  const Vector3 outside = Vector3::Constant(radius + a.reach());
+  const Bounds region = mapped({a.bounds().low - outside, a.bounds().high + outside}, b_to_a.inverse());
+  NearPlaces near(a, radius);
+  const auto add = [&](std::int32_t j, const Vector3& place) {
+    const Vector3 x = b_to_a(place);
+    if (!a.near(x)) {
+      return;
+    }
+    near.clear();
+    for_each_row(a, cells_around(a, x - margin, x + margin),
+                 [&](std::int32_t first, std::int32_t last) { near.add_row(first, last, x); });
+    for (const std::int32_t i : near.places()) {
+      pairs.push_back({a.node(i), j});
+    }
+    a.visit_inserted(x, radius, [&](std::int32_t i) { pairs.push_back({i, j}); });
+  };
+  for_each_row(b, cells_around(b, region.low, region.high), [&](std::int32_t begin, std::int32_t end) {
+    for (std::int32_t place = begin; place < end; ++place) {
+      add(b.node(place), b.position(place));
     }
   });
+  b.for_each_inserted(add);
 }
 
 namespace {
 
-/// Unbonded partners of the node at place `at` of cell (x, y, z) among the half of the surrounding cells that come later:
-/// the rest of its row, and the rows after.
-void find_later(const GrainGrid& own, std::int32_t at, int x, int y, int z, NearPlaces& near) {
-  const Vector3 position = own.position(at);
-  const int left = std::max(x - 1, 0), right = std::min(x + 2, own.cells(0));
+/// Partners of the node at place `at` of cell (x, y, z) among the half of the surrounding cells that come later: the rest of
+/// its row, and the rows after.
+void find_later(const GrainGrid& grid, std::int32_t at, int x, int y, int z, NearPlaces& near) {
+  const Vector3 position = grid.position(at);
+  const int left = std::max(x - 1, 0), right = std::min(x + 2, grid.cells(0));
   near.clear();
-  near.add_row(at + 1, own.begin(right, y, z), position);
-  if (y + 1 < own.cells(1)) {
-    near.add_row(own.begin(left, y + 1, z), own.begin(right, y + 1, z), position);
+  near.add_row(at + 1, grid.begin(right, y, z), position);
+  if (y + 1 < grid.cells(1)) {
+    near.add_row(grid.begin(left, y + 1, z), grid.begin(right, y + 1, z), position);
   }
-  if (z + 1 < own.cells(2)) {
-    for (int row = std::max(y - 1, 0); row < std::min(y + 2, own.cells(1)); ++row) {
-      near.add_row(own.begin(left, row, z + 1), own.begin(right, row, z + 1), position);
+  if (z + 1 < grid.cells(2)) {
+    for (int row = std::max(y - 1, 0); row < std::min(y + 2, grid.cells(1)); ++row) {
+      near.add_row(grid.begin(left, row, z + 1), grid.begin(right, row, z + 1), position);
     }
   }
 }
 
 } // namespace
 
-void add_pairs_inside(const GrainGrid& own, const NetworkData& network, std::vector<CandidatePair>& pairs) {
-  std::vector<std::int32_t> bonded_to(own.size(), -1);
-  NearPlaces near(own);
-  for (int z = 0; z < own.cells(2); ++z) {
-    for (int y = 0; y < own.cells(1); ++y) {
-      for (int x = 0; x < own.cells(0); ++x) {
-        for (std::int32_t at = own.begin(x, y, z); at < own.begin(x + 1, y, z); ++at) {
-          const std::int32_t i = own.node(at);
+void add_pairs_inside(const GrainGrid& grid, const NetworkData& network, double radius,
+                      std::vector<kernels::NodePair>& pairs) {
+  std::vector<std::int32_t> bonded_to(grid.size(), -1);
+  NearPlaces near(grid, radius);
+  for (int z = 0; z < grid.cells(2); ++z) {
+    for (int y = 0; y < grid.cells(1); ++y) {
+      for (int x = 0; x < grid.cells(0); ++x) {
+        for (std::int32_t at = grid.begin(x, y, z); at < grid.begin(x + 1, y, z); ++at) {
+          const std::int32_t i = grid.node(at);
           for (const std::int32_t* j = network.partners_begin(i); j != network.partners_end(i); ++j) {
             bonded_to[*j] = i;
           }
-          find_later(own, at, x, y, z, near);
+          find_later(grid, at, x, y, z, near);
           for (const std::int32_t place : near.places()) {
-            const std::int32_t j = own.node(place);
+            const std::int32_t j = grid.node(place);
             if (bonded_to[j] != i) {
-              pairs.push_back({i, -1, j});
-              pairs.push_back({j, -1, i});
+              pairs.push_back({std::min(i, j), std::max(i, j)});
             }
           }
         }
@@ -165,23 +186,22 @@ void add_pairs_inside(const GrainGrid& own, const NetworkData& network, std::vec
   }
 }
 
-void add_nodes_near(const GrainGrid& grid, const Vector3& x, std::vector<std::int32_t>& nodes) {
+void add_nodes_near(const GrainGrid& grid, const Vector3& x, double radius, std::vector<std::int32_t>& nodes) {
   if (!grid.near(x)) {
     return;
   }
-  const Vector3 margin = Vector3::Constant(grid.reach());
+  const Vector3 margin = Vector3::Constant(radius);
   const auto find = kernels::best_table().near_places;
   for_each_row(grid, cells_around(grid, x - margin, x + margin), [&](std::int32_t begin, std::int32_t end) {
     const std::size_t before = nodes.size();
     nodes.resize(before + (end - begin) + 8);
-    const std::int32_t n =
-        find(grid.columns(), begin, end, x.data(), grid.reach() * grid.reach(), nodes.data() + before);
+    const std::int32_t n = find(grid.columns(), begin, end, x.data(), radius * radius, nodes.data() + before);
     nodes.resize(before + n);
     for (std::size_t k = before; k < nodes.size(); ++k) {
       nodes[k] = grid.node(nodes[k]);
     }
   });
-  grid.visit_inserted(x, [&](std::int32_t node) { nodes.push_back(node); });
+  grid.visit_inserted(x, radius, [&](std::int32_t node) { nodes.push_back(node); });
 }
 
 } // namespace boba

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/forces/grain_frame.h"
 #include "bpm/forces/grain_grid.h"
 #include "bpm/forces/network_data.h"
 #include "bpm/packing/box.h"
@@ -29,21 +30,17 @@ struct NeighbourGrain {
 /// Sorted by other.
 std::vector<NeighbourGrain> neighbour_grains(int g, std::span<const Bounds> bounds, const Box& box, double reach);
 
-/// One candidate contact: own node, other grain (index into the neighbour list; -1 is the grain itself) and its node.
-struct CandidatePair {
-  std::int32_t own;
-  std::int32_t neighbour;
-  std::int32_t node;
-};
+/// Adds the pairs (node i of `a`, node j of `b`) closer than `radius`, measured where a's nodes are sorted; `b_to_a` brings b's
+/// there. Places inserted later count too, so that a pair may be added more than once. The radius must not exceed the
+/// reach of the grids.
+void add_pairs_between(const GrainGrid& a, const GrainGrid& b, const GrainFrame& b_to_a, double radius,
+                       std::vector<kernels::NodePair>& pairs);
 
-/// Adds the pairs (node of `own`, node of `other` displaced by `shift`) closer than the reach of the grids.
-void add_pairs_between(const GrainGrid& own, const GrainGrid& other, const Vector3& shift, int neighbour,
-                       std::vector<CandidatePair>& pairs);
+/// Adds the unbonded pairs i < j inside a grain that are closer than `radius`, which must not exceed the reach.
+void add_pairs_inside(const GrainGrid& grid, const NetworkData& network, double radius,
+                      std::vector<kernels::NodePair>& pairs);
 
-/// Adds the unbonded pairs inside a grain that are closer than the reach, each from both sides.
-void add_pairs_inside(const GrainGrid& own, const NetworkData& network, std::vector<CandidatePair>& pairs);
-
-/// Adds the nodes of a grid that are closer than its reach to x (d), inserted places included.
-void add_nodes_near(const GrainGrid& grid, const Vector3& x, std::vector<std::int32_t>& nodes);
+/// Adds the nodes of a grid that are closer than `radius` to x (d), inserted places included.
+void add_nodes_near(const GrainGrid& grid, const Vector3& x, double radius, std::vector<std::int32_t>& nodes);
 
 } // namespace boba

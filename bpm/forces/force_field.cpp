@@ -6,70 +6,74 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace boba {
 
 ForceField::ForceField(const Packing& packing, const LaneLayout& layout, const Material& material, double skin)
-    : layout_(layout), material_(material), table_(kernels::best_table()), contact_list_(layout, material.diameter, skin),
+    : layout_(layout), material_(material), table_(kernels::best_table()), contact_list_(layout, table_, material.diameter, skin),
       contact_sums_(layout.n_grains()) {
   results_.grains.resize(layout.n_grains());
   for (const auto& grain_template : packing.templates) {
     networks_.emplace_back(*grain_template);
     has_periodic_template_ = has_periodic_template_ || grain_template->period.has_value();
   }
+  std::int64_t n_nodes = 0;
   for (const Grain& grain : packing.grains) {
     network_of_grain_.push_back(&networks_[grain.template_index]);
+    first_node_.push_back(n_nodes);
+    n_nodes += network_of_grain_.back()->n_nodes();
   }
+  contact_nodes_ = std::make_unique_for_overwrite<kernels::ContactNode[]>(n_nodes);
 }
 
 namespace {
 
-/// Shift and velocity of every image in the contact list, as flat tables.
-struct ImageTables {
-  std::vector<double> shift, velocity;
-
-  ImageTables(const std::vector<ImageVector>& images, const Box& box, const Matrix3& residual_rate) {
-    for (const ImageVector& image : images) {
-      const Vector3 n(image.a, image.b, image.c);
-      const Vector3 x = box.h() * n, v = residual_rate * n;
-      shift.insert(shift.end(), x.data(), x.data() + 3);
-      velocity.insert(velocity.end(), v.data(), v.data() + 3);
-    }
-  }
-};
-
-/// Scratch of one thread, grown when needed.
-struct ContactScratch {
-  std::vector<double> r2;
-  std::vector<std::int32_t> hit;
-
-  void reserve(std::int64_t n) {
-    if (static_cast<std::int64_t>(r2.size()) < n) {
-      r2.resize(n);
-      hit.resize(n);
-    }
-  }
-};
-
 constexpr double no_contact_r2 = 1e300;
 
 /// Nodes whose drift and copies for the contact pass share a visit to the cache.
-constexpr int drift_chunk = 128;
+constexpr int drift_chunk = 32;
 
 } // namespace
 
-void ForceField::contacts_of(int grain, const kernels::ContactParameters& parameters, bool with_sums) {
-  thread_local ContactScratch scratch;
+void ForceField::contacts_between(ContactPair& pair, const Box& box, const Evaluation& what) {
+  const Vector3 n(pair.image.a, pair.image.b, pair.image.c);
+  const Vector3 shift = box.h() * n, velocity = what.residual_rate * n;
+  const kernels::ContactCandidates candidates = {pair.candidates.data(),
+                                                 static_cast<std::int64_t>(pair.candidates.size()),
+                                                 contact_nodes_.get() + first_node_[pair.a],
+                                                 contact_nodes_.get() + first_node_[pair.b],
+                                                 {shift[0], shift[1], shift[2]},
+                                                 {velocity[0], velocity[1], velocity[2]}};
+  const kernels::ContactParameters parameters = {material_.k, material_.k3, material_.gamma, material_.diameter};
+  pair.sums = {};
+  pair.sums.smallest_r2 = no_contact_r2;
+  thread_local std::vector<kernels::Touch> touches;
+  if (touches.size() < pair.candidates.size()) {
+    touches.resize(pair.candidates.size());
+  }
+  const std::int64_t n_touching =
+      table_.contacts(candidates, parameters, touches.data(), what.virial != Virial::none, pair.sums);
+  pair.touches.assign(touches.begin(), touches.begin() + n_touching);
+}
+
+void ForceField::add_contacts(int grain, double* f, bool with_sums) {
   kernels::ContactSums& sums = contact_sums_[grain];
   sums = {};
   sums.smallest_r2 = no_contact_r2;
-  const kernels::ContactRows rows = contact_list_.rows(grain);
-  std::fill_n(contact_forces_.begin() + contact_list_.first_slot(grain), contact_list_.n_slots(grain),
-              kernels::ContactForce{});
-  scratch.reserve(rows.n + 1);
-  table_.contacts(rows, contact_nodes_.data(), contact_forces_.data(), parameters, scratch.r2.data(), scratch.hit.data(),
-                  with_sums, sums);
+  for (const ContactSide& side : contact_list_.sides(grain)) {
+    const ContactPair& pair = contact_list_.pairs()[side.pair];
+    table_.add_touches(pair.touches.data(), static_cast<std::int64_t>(pair.touches.size()), side.sign, f, layout_.stride(grain));
+    if (with_sums && !pair.touches.empty()) {
+      for (int c = 0; c < 6; ++c) {
+        sums.virial[c] += 0.5 * pair.sums.virial[c];
+      }
+      sums.smallest_r2 = std::min(sums.smallest_r2, pair.sums.smallest_r2);
+      sums.potential += 0.5 * pair.sums.potential;
+      sums.n_touching += pair.sums.n_touching;
+    }
+  }
 }
 
 double ForceField::walls_on(int b, LaneState& state, std::size_t wall, double* f, bool with_sums) {
@@ -101,9 +105,11 @@ void ForceField::bonds_of(int b, LaneState& state, const Box& box, const Evaluat
     volume.assign(n_lane_nodes, 0.0);
   }
   force.assign(3 * n_lane_nodes, 0.0);
-  const auto sources = contact_list_.sources(b);
-  table_.scatter(sources.data(), static_cast<std::int64_t>(sources.size()), contact_forces_.data(),
-                 force.data() - block.offset, block.n_lanes);
+  for (int lane = 0; lane < block.n_lanes; ++lane) {
+    if (block.grain[lane] >= 0) {
+      add_contacts(block.grain[lane], force.data() + lane, what.virial != Virial::none);
+    }
+  }
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     wall_forces_[w][b] = walls_on(b, state, w, force.data() - block.offset, what.virial != Virial::none);
   }
@@ -139,29 +145,40 @@ void ForceField::bonds_of(int b, LaneState& state, const Box& box, const Evaluat
 }
 
 void ForceField::collect(int b, const LaneState& state) {
-  const auto sources = contact_list_.sources(b);
-  table_.collect(sources.data(), static_cast<std::int64_t>(sources.size()), state.x.data(), state.v.data(),
-                 layout_.blocks()[b].n_lanes, contact_nodes_.data());
+  for (const int grain : layout_.blocks()[b].grain) {
+    if (grain >= 0) {
+      collect(grain, contact_list_.listed(grain), state);
+    }
+  }
+}
+
+void ForceField::collect(int grain, std::span<const std::int32_t> nodes, const LaneState& state) {
+  table_.collect(nodes.data(), static_cast<std::int64_t>(nodes.size()), state.x.data() + layout_.first(grain),
+                 state.v.data() + layout_.first(grain), layout_.stride(grain), contact_nodes_.get() + first_node_[grain]);
 }
 
 kernels::DriftResult ForceField::drift_block(int b, LaneState& state, const kernels::Drift& drift) {
   const Block& block = layout_.blocks()[b];
-  const auto sources = contact_list_.sources(b);
-  auto source = sources.begin();
+  std::array<std::size_t, block_lanes> collected{};
   kernels::DriftResult result{};
   for (int node = 0; node < block.n_nodes; node += drift_chunk) {
     const int end = std::min(node + drift_chunk, block.n_nodes);
     const std::int64_t first = block.offset + 3 * static_cast<std::int64_t>(node) * block.n_lanes;
-    const std::int64_t past = block.offset + 3 * static_cast<std::int64_t>(end) * block.n_lanes;
     const kernels::DriftResult part =
         table_.drift(state.x.data() + first, state.v.data() + first, end - node, block.n_lanes, drift);
     result.largest_speed2 = std::max(result.largest_speed2, part.largest_speed2);
     result.checksum += part.checksum;
-    const auto begin = source;
-    while (source != sources.end() && source->from < past) {
-      ++source;
+    for (int lane = 0; lane < block.n_lanes; ++lane) {
+      const int grain = block.grain[lane];
+      if (grain >= 0) {
+        const std::span<const std::int32_t> listed = contact_list_.listed(grain);
+        const std::size_t from = collected[lane];
+        while (collected[lane] < listed.size() && listed[collected[lane]] < end) {
+          ++collected[lane];
+        }
+        collect(grain, listed.subspan(from, collected[lane] - from), state);
+      }
     }
-    table_.collect(&*begin, source - begin, state.x.data(), state.v.data(), block.n_lanes, contact_nodes_.data());
   }
   return result;
 }
@@ -183,8 +200,6 @@ void ForceField::prepare_contacts(const LaneState& state, const Box& box) {
   if (collected_ && !changed) {
     return;
   }
-  contact_nodes_.resize(contact_list_.slot_capacity());
-  contact_forces_.resize(contact_list_.slot_capacity());
 #pragma omp parallel for schedule(dynamic, 1)
   for (int b = 0; b < static_cast<int>(layout_.blocks().size()); ++b) {
     collect(b, state);
@@ -196,18 +211,15 @@ void ForceField::evaluate(LaneState& state, const Box& box, const Evaluation& wh
   prepare_contacts(state, box);
   collected_ = false;
   const double searched = omp_get_wtime();
-  const ImageTables images(contact_list_.images(), box, what.residual_rate);
-  const kernels::ContactParameters contact_parameters = {material_.k,           material_.k3,        material_.gamma,
-                                                         material_.diameter,    images.shift.data(), images.velocity.data()};
   const bool with_sums = what.virial != Virial::none;
   const int n_blocks = static_cast<int>(layout_.blocks().size());
   double kicked = searched;
   wall_forces_.assign(walls_.size(), std::vector<double>(n_blocks, 0.0));
 #pragma omp parallel
   {
-#pragma omp for schedule(dynamic, 1)
-    for (int g = 0; g < layout_.n_grains(); ++g) {
-      contacts_of(g, contact_parameters, with_sums);
+#pragma omp for schedule(dynamic, 4)
+    for (int p = 0; p < static_cast<int>(contact_list_.pairs().size()); ++p) {
+      contacts_between(contact_list_.pairs()[p], box, what);
     }
 #pragma omp master
     kicked = omp_get_wtime();

@@ -9,6 +9,8 @@
 #include "bpm/packing/lane_layout.h"
 
 #include <array>
+#include <memory>
+#include <span>
 #include <vector>
 
 namespace boba {
@@ -89,9 +91,11 @@ public:
 private:
   void prepare_contacts(const LaneState& state, const Box& box);
   void collect(int b, const LaneState& state);
+  void collect(int grain, std::span<const std::int32_t> nodes, const LaneState& state);
   kernels::DriftResult drift_block(int b, LaneState& state, const kernels::Drift& drift);
   double walls_on(int b, LaneState& state, std::size_t wall, double* f, bool with_sums);
-  void contacts_of(int grain, const kernels::ContactParameters& parameters, bool with_sums);
+  void contacts_between(ContactPair& pair, const Box& box, const Evaluation& what);
+  void add_contacts(int grain, double* f, bool with_sums);
   void bonds_of(int b, LaneState& state, const Box& box, const Evaluation& what);
   void reduce_contacts();
 
@@ -104,8 +108,8 @@ private:
   std::vector<Wall> walls_;
   Results results_;
   std::vector<kernels::ContactSums> contact_sums_;
-  std::vector<kernels::ContactNode, boost::alignment::aligned_allocator<kernels::ContactNode, 64>> contact_nodes_;
-  std::vector<kernels::ContactForce> contact_forces_;
+  std::vector<std::int64_t> first_node_; ///< per grain, in contact_nodes_
+  std::unique_ptr<kernels::ContactNode[]> contact_nodes_; ///< of all nodes, kept up to date for those that are listed
   bool collected_ = false; ///< contact nodes are those of the present positions
   std::vector<std::vector<double>> wall_forces_; ///< per wall and block
   bool has_periodic_template_ = false;

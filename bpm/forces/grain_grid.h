@@ -40,10 +40,20 @@ public:
   int inside(int coordinate, int axis) const { return std::clamp(coordinate, 0, n_cells_[axis] - 1); }
   /// False when none of the 27 cells around the one that holds x has a node, inserted ones included.
   bool near(const Vector3& x) const;
-  /// Adds a place where a node is seen too, up to one cell outside the bounds. The sorted nodes stay as they are.
+  /// True when x is at most one cell outside the bounds.
+  bool holds(const Vector3& x) const {
+    return (x - bounds_.low).minCoeff() >= -reach_ && (bounds_.high - x).minCoeff() >= -reach_;
+  }
+  /// Adds a place where a node is seen too, which the grid holds. The sorted nodes stay as they are.
   void insert(std::int32_t node, const Vector3& position);
-  /// Calls visit(node) for the inserted places closer than the reach to x.
-  template <class Visit> void visit_inserted(const Vector3& x, Visit&& visit) const {
+  /// Calls visit(node, place) for every inserted place.
+  template <class Visit> void for_each_inserted(Visit&& visit) const {
+    for (const Inserted& inserted : inserted_) {
+      visit(inserted.node, inserted.position);
+    }
+  }
+  /// Calls visit(node) for the inserted places closer than `radius` (at most the reach) to x.
+  template <class Visit> void visit_inserted(const Vector3& x, double radius, Visit&& visit) const {
     if (inserted_.empty()) {
       return;
     }
@@ -55,7 +65,7 @@ public:
       for (int y = std::max(c[1] - 1, -ring); y <= std::min(c[1] + 1, n_cells_[1] + ring - 1); ++y) {
         for (int x_cell = std::max(c[0] - 1, -ring); x_cell <= std::min(c[0] + 1, n_cells_[0] + ring - 1); ++x_cell) {
           for (std::int32_t at = last_inserted_[ringed(x_cell, y, z)]; at >= 0; at = inserted_[at].previous) {
-            if ((inserted_[at].position - x).squaredNorm() < reach_ * reach_) {
+            if ((inserted_[at].position - x).squaredNorm() < radius * radius) {
               visit(inserted_[at].node);
             }
           }

@@ -48,14 +48,14 @@ public:
     std::sort(neighbours.begin(), neighbours.end(), [](const NeighbourGrain& a, const NeighbourGrain& b) {
       return std::tie(a.other, a.image) < std::tie(b.other, b.image);
     });
-    std::vector<CandidatePair> pairs;
+    std::vector<kernels::NodePair> pairs;
     for (const NeighbourGrain& neighbour : neighbours) {
       if (!is_first_side(grain, neighbour)) {
         continue;
       }
       const Vector3 shift = box_.h() * Vector3(neighbour.image.a, neighbour.image.b, neighbour.image.c);
       pairs.clear();
-      add_pairs_between(grids_[grain], grids_[neighbour.other], shift, 0, pairs);
+      add_pairs_between(grids_[grain], grids_[neighbour.other], GrainFrame{}.displaced(shift), material_.diameter, pairs);
       GrainContact contact = contact_from(grain, neighbour.other, shift, pairs);
       if (contact.n_pairs > 0) {
         contact.image = {neighbour.image.a, neighbour.image.b, neighbour.image.c};
@@ -66,13 +66,13 @@ public:
   }
 
 private:
-  GrainContact contact_from(int grain, int other, const Vector3& shift, const std::vector<CandidatePair>& pairs) const {
+  GrainContact contact_from(int grain, int other, const Vector3& shift, const std::vector<kernels::NodePair>& pairs) const {
     GrainContact contact{.grain = grain, .other = other};
     contact.branch = centres_[other] + shift - centres_[grain];
     const auto own = grains_.nodes_of(grain), others = grains_.nodes_of(other);
     std::vector<Vector3> midpoints;
-    for (const CandidatePair& pair : pairs) {
-      const Vector3 from_other = own[pair.own] - (others[pair.node] + shift);
+    for (const kernels::NodePair& pair : pairs) {
+      const Vector3 from_other = own[pair.i] - (others[pair.j] + shift);
       const double r = from_other.norm();
       if (!(r < material_.diameter)) {
         continue;
@@ -80,7 +80,7 @@ private:
       const double force = contact_force(material_.k, material_.k3, 0.0, material_.diameter, r, 0.0);
       contact.force += force * (r > 0.0 ? Vector3(from_other / r) : Vector3(Vector3::Zero()));
       contact.largest_overlap = std::max(contact.largest_overlap, material_.diameter - r);
-      midpoints.push_back(own[pair.own] - 0.5 * from_other);
+      midpoints.push_back(own[pair.i] - 0.5 * from_other);
     }
     if (midpoints.empty()) {
       return contact;

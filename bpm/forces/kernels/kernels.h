@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <compare>
 #include <cstdint>
 
 // The hot loops as plain functions on raw arrays, compiled once for each instruction set (kernels.cpp) and reached through
@@ -66,42 +67,62 @@ struct DriftResult {
   double checksum;       ///< a sum of all v^2: not finite when any velocity is not
 };
 
-/// Position and velocity of a node that may touch another, copied together on one cache line before the contact pass: in
+/// Position and velocity of a node that may touch another, copied together onto one cache line before the contact pass: in
 /// the lane layout they are spread over six.
 struct alignas(64) ContactNode {
   double x[3], v[3];
 };
 
-/// Force of all contacts of one node, k d.
-struct ContactForce {
-  double f[3];
+/// A candidate contact: a node of each of two grains.
+struct NodePair {
+  std::int32_t i, j;
+  auto operator<=>(const NodePair&) const = default;
 };
 
-/// Where a contact node comes from: `from` counts numbers of a lane array to its x component.
-struct ContactSource {
-  std::int32_t from, slot;
+/// A contact and the force on node i of the first grain; node j of the second feels the opposite.
+struct Touch {
+  NodePair nodes;
+  double force[3];
 };
 
-/// Candidate contacts of one grain, sorted by own node. `own` and `other` are slots of ContactNode.
-struct ContactRows {
+/// Candidates between two grains (or inside one), whose second is seen displaced by a lattice vector.
+struct ContactCandidates {
+  const NodePair* pairs;
   std::int64_t n;
-  const std::int32_t* own;
-  const std::int32_t* other;
-  const std::int32_t* image; ///< index into the shift tables
+  const ContactNode *first, *second; ///< node 0 of each grain
+  double shift[3], shift_velocity[3]; ///< what to add to the second grain's positions and velocities
 };
 
 struct ContactParameters {
   double k, k3, gamma, diameter;
-  const double* shift;          ///< [image][3]: what to add to the other node's position
-  const double* shift_velocity; ///< [image][3]
 };
 
-/// Half of each pair's virial belongs to this side. `potential` is half the pairs' energy.
+/// Over the contacts of one pair of grains; both have half of the virial.
 struct ContactSums {
-  double virial[6];
-  double smallest_r2;
-  double potential;
+  double virial[6];    ///< xx yy zz xy xz yz, k d^2
+  double smallest_r2;  ///< d^2
+  double potential;    ///< k d^2
   std::int64_t n_touching;
+};
+
+/// Positions of a block and the places of its nodes in their grains' frames, [node][component][lane].
+struct FrameArrays {
+  const double* x;
+  const float* reference;
+  int n_nodes, n_lanes;
+};
+
+/// Per lane: a point near the grain, and sums of x - origin and of (x - origin) (x) reference, row by row.
+struct FrameFit {
+  double origin[3][8];
+  double first[3][8];
+  double second[9][8];
+};
+
+/// Per lane: x = f X + centre, and the square of the distance above which a node counts as far.
+struct LaneFrames {
+  double f[9][8], centre[3][8];
+  double threshold2[8];
 };
 
 /// Nodes of one grain, sorted by cell; columns of coordinates, d.
@@ -116,15 +137,19 @@ struct KernelTable {
   void (*volumes)(const Network&, const double* x, double* volume, int n_lanes);
   void (*bonds)(const Network&, const BlockArrays&, const BondParameters&, bool many_body, Virial, LaneSums&);
   DriftResult (*drift)(double* x, const double* v, int n_nodes, int n_lanes, const Drift&);
-  /// nodes[slot] of every source: its position and velocity from arrays whose components are `stride` apart.
-  void (*collect)(const ContactSource* sources, std::int64_t n, const double* x, const double* v, int stride,
-                  ContactNode* nodes);
-  /// Sums the contact forces of one grain into force[own slot], which must be zero before. `scratch` holds at least rows.n
-  /// doubles and rows.n ints.
-  void (*contacts)(const ContactRows& rows, const ContactNode* nodes, ContactForce* force, const ContactParameters&,
-                   double* scratch, std::int32_t* scratch_index, bool with_sums, ContactSums&);
-  /// Adds force[slot] of every source to where it came from.
-  void (*scatter)(const ContactSource* sources, std::int64_t n, const ContactForce* force, double* f, int stride);
+  /// to[node] of every listed node of one grain: its position and velocity from its lane.
+  void (*collect)(const std::int32_t* nodes, std::int64_t n, const double* x, const double* v, int stride,
+                  ContactNode* to);
+  /// Writes the contacts among the candidates into `touches` (room for all of them) and returns their number.
+  std::int64_t (*contacts)(const ContactCandidates&, const ContactParameters&, Touch* touches, bool with_sums,
+                           ContactSums&);
+  /// Adds sign times the forces to node i (sign = 1) or j (-1) of a grain's lane.
+  void (*add_touches)(const Touch* touches, std::int64_t n, double sign, double* f, int stride);
+  /// Sums over the nodes of a block for the frames of its grains.
+  void (*fit_frames)(const FrameArrays&, FrameFit&);
+  /// Distances of nodes from where their frames put them: the largest below the lane's threshold, and the places
+  /// node * n_lanes + lane above it, which are written into `far` (room for all); returns their number.
+  std::int64_t (*frame_residuals)(const FrameArrays&, const LaneFrames&, double* largest2, std::int32_t* far);
   /// Writes the places in [begin, end) closer than sqrt(reach2) to p into `found`, ascending, and returns their number.
   /// `found` has room for end - begin + 8 numbers.
   std::int32_t (*near_places)(const SortedNodes&, std::int32_t begin, std::int32_t end, const double* p, double reach2,

@@ -96,7 +96,7 @@ TEST(Runs, FlipChangesNothing) {
   for (int step = 0; step < 300; ++step) {
     for (Stepper* stepper : {&flipping, &leaning}) {
       const double xy = stepper->box().xy();
-      stepper->advance(Virial::trace);
+      stepper->advance(step + 1 < 300 ? Virial::trace : Virial::full); // the last step keeps its forces
       stepper->move_cell({.shear = 0.05, .dilation = 0.05 * (stepper->pressure() - 0.05)});
       flips += std::abs(stepper->box().xy() - xy) > 1.0;
     }
@@ -136,7 +136,7 @@ TEST(Runs, MomentumIsConserved) {
   Stepper stepper(nine_grains(12.0), {}, {});
   const auto momentum = [&] {
     Vector3 sum = Vector3::Zero();
-    for (const Vector3& v : stepper.snapshot(all_parts).velocity) {
+    for (const Vector3& v : stepper.snapshot({.velocity = true}).velocity) {
       sum += v;
     }
     return sum;
@@ -144,7 +144,7 @@ TEST(Runs, MomentumIsConserved) {
   const Vector3 before = momentum();
   stepper.start();
   for (int step = 0; step < 500; ++step) {
-    stepper.advance(Virial::none);
+    stepper.advance(step + 1 < 500 ? Virial::none : Virial::full);
   }
   EXPECT_LT((momentum() - before).norm(), 1e-11);
 }
@@ -168,7 +168,7 @@ TEST(Runs, AngularMomentumOfAFreeGrainIsConserved) {
   stepper.start();
   const Vector3 before = angular_momentum();
   for (int step = 0; step < 1000; ++step) {
-    stepper.advance(Virial::none);
+    stepper.advance(step + 1 < 1000 ? Virial::none : Virial::full);
   }
   EXPECT_LT((angular_momentum() - before).norm(), 1e-10);
 }

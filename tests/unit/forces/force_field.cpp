@@ -23,7 +23,7 @@ Evaluated evaluate(const Packing& packing, Virial virial, const Material& materi
   const LaneLayout layout(packing);
   LaneState state(packing, layout);
   ForceField forces(packing, layout, material, 0.3);
-  forces.evaluate(state, packing.box, {0.0, 0.0, virial, residual_rate});
+  forces.evaluate(state, packing.box, {.virial = virial, .keep_forces = true, .residual_rate = residual_rate});
   Evaluated evaluated;
   for (int g = 0; g < packing.n_grains(); ++g) {
     for (int node = 0; node < layout.n_nodes(g); ++node) {

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/forces/contact_search.h"
+#include "bpm/forces/kernels/kernels.h"
+
+#include <vector>
+
+namespace boba {
+
+/// Two grains that may touch, the second displaced by a lattice vector, or one grain with itself.
+///
+/// The candidates are all pairs of nodes that were closer than diameter + skin where the frames had them when they were
+/// searched, sorted by i, then j.
+struct ContactPair {
+  int a = 0, b = 0; ///< a <= b; image > 0 when a grain meets its own image
+  ImageVector image;
+  std::vector<kernels::NodePair> candidates;
+
+  bool searched = false;
+  bool changed = true;     ///< since the grains last listed their nodes
+  GrainFrame frame_a, frame_b; ///< at the search; b's displaced by the lattice vector
+  Bounds bounds_a, bounds_b;   ///< of the grains and their reach, at the search
+  Bounds zone;                 ///< where nodes of a could be near nodes of b, at the search
+
+  std::vector<kernels::Touch> touches; ///< of the last evaluation
+  kernels::ContactSums sums{};
+
+  bool inside() const { return a == b && image == ImageVector{}; }
+};
+
+/// A pair that a grain takes part in, and whether as first (1) or second (-1).
+struct ContactSide {
+  int pair = 0;
+  double sign = 1.0;
+};
+
+} // namespace boba

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a contact list follows its grains: frames, places of nodes, and how far they stray.
+#include "bpm/forces/contact_list.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace boba {
+
+namespace {
+
+/// Share of a grain's nodes with new places above which noting them all is cheaper than going on.
+constexpr double largest_moved_share = 0.1;
+/// Places are stored as floats: their rounding, up to hundreds of d from a grain's centre, stays below this, d.
+constexpr double rounding = 1e-4;
+
+} // namespace
+
+Vector3 ContactList::place(int grain, int node) const {
+  const std::int64_t at = layout_.index(grain, node, 0), stride = layout_.stride(grain);
+  return {place_[at], place_[at + stride], place_[at + 2 * stride]};
+}
+
+void ContactList::track(const LaneState& state) {
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int b = 0; b < static_cast<int>(layout_.blocks().size()); ++b) {
+    if (built_) {
+      track_block(b, state);
+      continue;
+    }
+    for (const int grain : layout_.blocks()[b].grain) {
+      if (grain >= 0) {
+        note_all(grain, state);
+      }
+    }
+  }
+}
+
+void ContactList::track_block(int b, const LaneState& state) {
+  thread_local std::vector<std::int32_t> far;
+  const Block& block = layout_.blocks()[b];
+  const kernels::FrameArrays arrays = {state.x.data() + block.offset, place_.data() + block.offset, block.n_nodes,
+                                       block.n_lanes};
+  kernels::FrameFit fit{};
+  for (int lane = 0; lane < block.n_lanes; ++lane) {
+    for (int c = 0; c < 3 && block.grain[lane] >= 0; ++c) {
+      fit.origin[c][lane] = grains_[block.grain[lane]].frame.centre[c];
+    }
+  }
+  table_.fit_frames(arrays, fit);
+  kernels::LaneFrames frames{};
+  for (int lane = 0; lane < block.n_lanes; ++lane) {
+    frames.threshold2[lane] = 1e300; // an idle lane never strays
+    if (block.grain[lane] < 0) {
+      continue;
+    }
+    TrackedGrain& grain = grains_[block.grain[lane]];
+    Matrix3 second;
+    for (int c = 0; c < 9; ++c) {
+      second(c / 3, c % 3) = fit.second[c][lane];
+    }
+    grain.frame.linear = second * grain.inverse_moments;
+    for (int c = 0; c < 3; ++c) {
+      grain.frame.centre[c] += fit.first[c][lane] / block.n_nodes;
+      frames.centre[c][lane] = grain.frame.centre[c];
+    }
+    for (int c = 0; c < 9; ++c) {
+      frames.f[c][lane] = grain.frame.linear(c / 3, c % 3);
+    }
+    frames.threshold2[lane] = far_share * skin_ * far_share * skin_;
+  }
+  double largest2[block_lanes] = {};
+  far.resize(static_cast<std::size_t>(block.n_nodes) * block.n_lanes);
+  const std::int64_t n_far = table_.frame_residuals(arrays, frames, largest2, far.data());
+  for (std::int64_t k = 0; k < n_far; ++k) {
+    grains_[block.grain[far[k] % block.n_lanes]].moved.push_back(far[k] / block.n_lanes);
+  }
+  for (int lane = 0; lane < block.n_lanes; ++lane) {
+    const int g = block.grain[lane];
+    if (g >= 0) {
+      grains_[g].stray = std::sqrt(largest2[lane]) + rounding;
+      if (out_of_shape(grains_[g], block.n_nodes) || !note_moved(g, state)) {
+        note_all(g, state);
+      }
+    }
+  }
+}
+
+bool ContactList::out_of_shape(const TrackedGrain& grain, int n_nodes) const {
+  const double e = shortening(grain.frame.linear);
+  return !(e <= largest_shortening) ||
+         !(reach_inside() * (1.0 - e) - 2.0 * grain.stray >= diameter_ + reserve()) ||
+         static_cast<double>(grain.n_moved + static_cast<std::int64_t>(grain.moved.size())) > largest_moved_share * n_nodes;
+}
+
+/// Notes the places of all nodes anew: the frame starts as a mere translation.
+void ContactList::note_all(int g, const LaneState& state) {
+  TrackedGrain& grain = grains_[g];
+  const int n_nodes = layout_.n_nodes(g);
+  const std::int64_t stride = layout_.stride(g);
+  // A position that is no number stands at the centre here; the drift finds its velocity and ends the run.
+  const auto finite = [](double x) { return std::isfinite(x) ? x : 0.0; };
+  Vector3 mean = Vector3::Zero();
+  for (int node = 0; node < n_nodes; ++node) {
+    const std::int64_t at = layout_.index(g, node, 0);
+    mean += Vector3(finite(state.x[at]), finite(state.x[at + stride]), finite(state.x[at + 2 * stride]));
+  }
+  mean /= n_nodes;
+  const GrainFrame fresh = {Matrix3::Identity(), mean};
+  // Where the neighbours' search had the grain, seen from its new places.
+  grain.neighbour_frame = grain.neighbour_frame.after(grain.frame.inverse()).after(fresh);
+  grain.frame = fresh;
+
+  thread_local std::vector<Vector3> places;
+  places.resize(n_nodes);
+  Bounds bounds;
+  Matrix3 moments = Matrix3::Zero();
+  for (int node = 0; node < n_nodes; ++node) {
+    const std::int64_t at = layout_.index(g, node, 0);
+    for (int c = 0; c < 3; ++c) {
+      place_[at + c * stride] = static_cast<float>(finite(state.x[at + c * stride] - mean[c]));
+      places[node][c] = place_[at + c * stride];
+    }
+    bounds.low = bounds.low.cwiseMin(places[node]);
+    bounds.high = bounds.high.cwiseMax(places[node]);
+    moments += places[node] * places[node].transpose();
+  }
+  // A flat or tiny grain has no full set of moments: its frame then only turns and shears where it can.
+  moments += 1e-6 * n_nodes * Matrix3::Identity();
+  grain.inverse_moments = moments.inverse();
+  grain.grid = GrainGrid(places, bounds, reach_between() / (1.0 - largest_shortening));
+  grain.stray = rounding;
+  grain.moved.clear();
+  grain.n_moved = 0;
+  grain.anew = true;
+}
+
+/// Gives the nodes that strayed far the places where they are. False when one has left the grain's bounds.
+bool ContactList::note_moved(int g, const LaneState& state) {
+  TrackedGrain& grain = grains_[g];
+  const GrainFrame back = grain.frame.inverse();
+  const std::int64_t stride = layout_.stride(g);
+  for (const std::int32_t node : grain.moved) {
+    const std::int64_t at = layout_.index(g, node, 0);
+    const Vector3 x = back(Vector3(state.x[at], state.x[at + stride], state.x[at + 2 * stride]));
+    const Bounds& bounds = grain.grid.bounds();
+    if (!((x - bounds.low).minCoeff() >= -bounds_margin && (bounds.high - x).minCoeff() >= -bounds_margin)) {
+      return false;
+    }
+    for (int c = 0; c < 3; ++c) {
+      place_[at + c * stride] = static_cast<float>(x[c]);
+    }
+    grain.grid.insert(node, place(g, node));
+  }
+  grain.n_moved += static_cast<int>(grain.moved.size());
+  return true;
+}
+
+} // namespace boba
