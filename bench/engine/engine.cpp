@@ -11,23 +11,24 @@
 namespace boba::bench {
 namespace {
 
-/// One stepper for each size, alpha and number of threads, shared by the benchmarks that need it.
-Stepper& stepper_of(int n_grains, int n_nodes, double alpha, int threads) {
-  static std::map<std::tuple<int, int, double, int>, std::unique_ptr<Stepper>> made;
-  std::unique_ptr<Stepper>& stepper = made[{n_grains, n_nodes, alpha, threads}];
+/// One stepper for each size, alpha, number of threads and precision, shared by the benchmarks that need it.
+Stepper& stepper_of(int n_grains, int n_nodes, double alpha, int threads, Precision precision = Precision::full) {
+  static std::map<std::tuple<int, int, double, int, Precision>, std::unique_ptr<Stepper>> made;
+  std::unique_ptr<Stepper>& stepper = made[{n_grains, n_nodes, alpha, threads, precision}];
   if (!stepper) {
     stepper = std::make_unique<Stepper>(dense_packing(n_grains, n_nodes, alpha), Material{},
-                                        SimulationOptions{.threads = threads});
+                                        SimulationOptions{.threads = threads, .precision = precision});
     stepper->start();
   }
   return *stepper;
 }
 
-/// Arguments: grains, nodes a grain, alpha, threads. One iteration is one step at the paper's fastest rate.
+/// Arguments: grains, nodes a grain, alpha, threads, precision (1: mixed). One iteration is one step at the paper's fastest rate.
 void dense_shear(benchmark::State& state) {
   const auto alpha = static_cast<double>(state.range(2));
   Stepper& stepper = stepper_of(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), alpha,
-                                static_cast<int>(state.range(3)));
+                                static_cast<int>(state.range(3)),
+                                state.range(4) != 0 ? Precision::mixed : Precision::full);
   const double pressure = dense_pressure(alpha);
   const Timings before = stepper.timings();
   for (auto _ : state) {
@@ -69,13 +70,10 @@ void node_volumes(benchmark::State& state) {
 }
 
 BENCHMARK(dense_shear)
-    ->ArgNames({"grains", "nodes", "alpha", "threads"})
-    ->Args({16, 5137, 2, 1})
-    ->Args({16, 5137, 0, 1})
-    ->Args({64, 5137, 2, 1})
-    ->Args({64, 5137, 0, 1})
-    ->Args({64, 5137, 2, 2})
-    ->Args({64, 300, 2, 1})
+    ->ArgNames({"grains", "nodes", "alpha", "threads", "mixed"})
+    ->ArgsProduct({{16}, {5137}, {2, 0}, {1}, {0, 1}})
+    ->ArgsProduct({{64}, {5137}, {2, 0}, {1, 2}, {0, 1}})
+    ->ArgsProduct({{64}, {300}, {2}, {1}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->MinTime(3.0)
     ->UseRealTime();

@@ -23,24 +23,14 @@ std::string describe_fast_node(const Block& block, const LaneState& state, std::
                                const Material& material) {
   int worst_grain = -1, worst_node = 0;
   double worst = -1.0;
-  for (int lane = 0; lane < block.n_lanes; ++lane) {
-    for (int node = 0; node < block.n_nodes; ++node) {
-      double v2 = 0.0;
-      for (int c = 0; c < 3; ++c) {
-        const double v = state.v[block.offset + (3 * static_cast<std::int64_t>(node) + c) * block.n_lanes + lane];
-        v2 += v * v;
-      }
-      if (!(v2 <= worst) || !std::isfinite(v2)) {
+  for (const int grain : block.grain) {
+    for (int node = 0; grain >= 0 && node < block.n_nodes && std::isfinite(worst); ++node) {
+      const double v2 = state.velocity(grain, node).squaredNorm();
+      if (!(v2 <= worst)) { // also true for NaN
         worst = v2;
-        worst_grain = block.grain[lane];
+        worst_grain = grain;
         worst_node = node;
-        if (!std::isfinite(v2)) {
-          break;
-        }
       }
-    }
-    if (!std::isfinite(worst)) {
-      break;
     }
   }
   const std::string what = std::isfinite(worst)
@@ -49,6 +39,12 @@ std::string describe_fast_node(const Block& block, const LaneState& state, std::
                                : std::string("has a velocity that is not a finite number");
   return fmt::format("blow-up at step {}: node {} of grain {} {}. Likely cause: {}.", step, worst_node, worst_grain, what,
                      likely_cause(dt));
+}
+
+std::string describe_torn_grain(double share, std::int64_t step, double dt) {
+  return fmt::format("blow-up at step {}: a grain reaches {:.0f} % of the range of fixed-point positions, four times the "
+                     "largest grain's radius. Likely cause: {}.",
+                     step, 100.0 * share, likely_cause(dt));
 }
 
 std::string describe_stretched_bond(const ForceField::Stretch& stretch, std::int64_t step, double dt) {

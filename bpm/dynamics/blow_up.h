@@ -3,7 +3,7 @@
 
 #include "bpm/forces/force_field.h"
 #include "bpm/laws/material.h"
-#include "bpm/packing/lane_layout.h"
+#include "bpm/packing/lane_state.h"
 
 #include <string>
 
@@ -15,6 +15,9 @@ inline constexpr double largest_bond_stretch = 3.0;
 /// Names the fastest (or not finite) node of a block, its grain, the step, and the likely cause.
 std::string describe_fast_node(const Block& block, const LaneState& state, std::int64_t step, double dt,
                                const Material& material);
+
+/// The same for a grain whose nodes are too far from its centre for fixed-point positions.
+std::string describe_torn_grain(double share, std::int64_t step, double dt);
 
 /// The same for a bond that is stretched beyond `largest_bond_stretch`.
 std::string describe_stretched_bond(const ForceField::Stretch& stretch, std::int64_t step, double dt);

@@ -7,10 +7,10 @@ Clamp clamp_between(double low, double high, const LaneLayout& layout, const Lan
   Clamp clamp;
   for (int g = 0; g < layout.n_grains(); ++g) {
     for (int node = 0; node < layout.n_nodes(g); ++node) {
-      const double z = state.x[layout.index(g, node, 2)];
+      const double z = state.position(g, node)[2];
       if (z >= low && z <= high) {
-        clamp.first.push_back(layout.index(g, node, 0));
-        clamp.stride.push_back(layout.stride(g));
+        clamp.grain.push_back(g);
+        clamp.node.push_back(node);
       }
     }
   }
@@ -19,13 +19,11 @@ Clamp clamp_between(double low, double high, const LaneLayout& layout, const Lan
 
 void apply_clamp(Clamp& clamp, LaneState& state) {
   clamp.force.setZero();
-  for (std::size_t k = 0; k < clamp.first.size(); ++k) {
-    for (int c = 0; c < 3; ++c) {
-      const std::int64_t at = clamp.first[k] + static_cast<std::int64_t>(c) * clamp.stride[k];
-      clamp.force[c] += state.f[at];
-      state.f[at] = 0.0;
-      state.v[at] = clamp.velocity[c];
-    }
+  for (std::size_t k = 0; k < clamp.node.size(); ++k) {
+    const int grain = static_cast<int>(clamp.grain[k]), node = static_cast<int>(clamp.node[k]);
+    clamp.force += state.force(grain, node);
+    state.set_force(grain, node, Vector3::Zero());
+    state.set_velocity(grain, node, clamp.velocity);
   }
 }
 

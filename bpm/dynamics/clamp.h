@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/packing/lane_layout.h"
+#include "bpm/packing/lane_state.h"
 
 #include <cstdint>
 #include <vector>
@@ -11,8 +11,7 @@ namespace boba {
 /// A set of nodes that moves rigidly at a given velocity.
 /// Source: docs/notation.md, "Clamp".
 struct Clamp {
-  std::vector<std::int64_t> first;  ///< index of each node's x component in the state's arrays
-  std::vector<std::int32_t> stride; ///< distance of its components
+  std::vector<std::int64_t> grain, node; ///< of each clamped node
   Vector3 velocity = Vector3::Zero();
   Vector3 force = Vector3::Zero(); ///< of the other nodes on the clamped ones at the last step, k d
 };

@@ -187,6 +187,7 @@ void Simulation::restore(const SavedState& state) {
       impl_->saved_in_stage->real.erase("x");
       impl_->saved_in_stage->real.erase("v");
       impl_->saved_in_stage->real.erase("f");
+      impl_->saved_in_stage->integer.erase("x");
     }
   } catch (const std::out_of_range&) {
     throw std::runtime_error("saved state: a number is missing; it was written by another version of Boba");

@@ -4,6 +4,7 @@
 #include "bpm/dynamics/observer.h"
 #include "bpm/dynamics/stage.h"
 #include "bpm/laws/material.h"
+#include "bpm/packing/lane_layout.h"
 #include "bpm/packing/packing.h"
 #include "bpm/packing/snapshot.h"
 
@@ -22,6 +23,7 @@ struct SimulationOptions {
   double dt = 0.1; ///< tau
   int threads = 1;
   double skin = 0.3; ///< d; margin of the contact list
+  Precision precision = Precision::full;
 };
 
 /// Sums over the packing at the present step. Stress: tension positive, xx yy zz xy xz yz, k/d.

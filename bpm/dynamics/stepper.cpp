@@ -10,8 +10,16 @@
 
 namespace boba {
 
+namespace {
+
+/// Steps between two looks at the range of fixed-point positions. In one step a node moves at most half a diameter.
+constexpr std::int64_t recentre_interval = 64;
+constexpr double largest_range_share = 0.45;
+
+} // namespace
+
 Stepper::Stepper(Packing packing, const Material& material, const SimulationOptions& options)
-    : packing_(std::move(packing)), material_(material), options_(options), layout_(packing_),
+    : packing_(std::move(packing)), material_(material), options_(options), layout_(packing_, options.precision),
       state_(packing_, layout_), forces_(packing_, layout_, material, options.skin), box_(packing_.box) {
   omp_set_num_threads(options.threads);
 }
@@ -39,6 +47,12 @@ void Stepper::start() {
 
 void Stepper::advance(Virial virial) {
   drift();
+  if ((step_ + 1) % recentre_interval == 0) {
+    const double share = state_.recentre();
+    if (share > largest_range_share) {
+      throw BlowUp(describe_torn_grain(share, step_ + 1, options_.dt));
+    }
+  }
   evaluate({.kick = options_.dt, .half_kick = 0.5 * options_.dt, .virial = virial, .residual_rate = residual_rate_});
   ++step_;
 }
@@ -59,6 +73,9 @@ void Stepper::drift() {
   }
   drift.residual_shift = -residual.dot(box_.origin());
 
+  // Multiples of the golden ratio fill (0, 1) as evenly as any sequence does.
+  drift.dither = std::fmod(static_cast<double>(step_ + 1) * 0.6180339887498949, 1.0);
+  state_.map_origins(position_map_, shift);
   const std::vector<kernels::DriftResult> results = forces_.drift(state_, drift);
   check_drift(results);
   double speed2 = 0.0;
@@ -123,26 +140,20 @@ void Stepper::deform_cell(const Matrix3& gradient, const Matrix3& of_positions) 
 void Stepper::add_streaming(double rate, double sign) {
   for (int g = 0; g < layout_.n_grains(); ++g) {
     for (int node = 0; node < layout_.n_nodes(g); ++node) {
-      const double y = state_.x[layout_.index(g, node, 1)] - box_.origin()[1];
-      state_.v[layout_.index(g, node, 0)] += sign * rate * y;
+      const double y = state_.position(g, node)[1] - box_.origin()[1];
+      state_.set_velocity(g, node, state_.velocity(g, node) + Vector3(sign * rate * y, 0.0, 0.0));
     }
   }
   set_residual_gradient(simple_shear(sign > 0.0 ? rate : 0.0));
 }
 
-double Stepper::virial_pressure_when_scaled(const AlignedVector& x, double factor) {
+double Stepper::virial_pressure_when_scaled(const std::vector<Vector3>& x, double factor) {
   const Matrix3 map = factor * position_map_;
   const Vector3 shift = box_.origin() - map * box_.origin();
-  for (const Block& block : layout_.blocks()) {
-    const std::int64_t stride = block.n_lanes;
-    for (std::int64_t node = 0; node < block.n_nodes; ++node) {
-      const std::int64_t first = block.offset + 3 * node * stride;
-      for (std::int64_t at = first; at < first + stride; ++at) {
-        const Vector3 scaled = map * Vector3(x[at], x[at + stride], x[at + 2 * stride]) + shift;
-        for (int c = 0; c < 3; ++c) {
-          state_.x[at + c * stride] = scaled[c];
-        }
-      }
+  std::size_t next = 0;
+  for (int g = 0; g < layout_.n_grains(); ++g) {
+    for (int node = 0; node < layout_.n_nodes(g); ++node) {
+      state_.set_position(g, node, map * x[next++] + shift);
     }
   }
   Box scaled_box = box_;
@@ -157,14 +168,20 @@ double Stepper::virial_pressure_when_scaled(const AlignedVector& x, double facto
 }
 
 double Stepper::affine_bulk_modulus() {
-  const AlignedVector x = state_.x;
+  const LaneState before = state_;
+  std::vector<Vector3> x;
+  for (int g = 0; g < layout_.n_grains(); ++g) {
+    for (int node = 0; node < layout_.n_nodes(g); ++node) {
+      x.push_back(state_.position(g, node));
+    }
+  }
   const ForceField::Results results = forces_.results();
   const std::vector<Wall> walls = forces_.walls();
   const double step = 1e-5;
   const double looser = virial_pressure_when_scaled(x, 1.0 + step);
   const double tighter = virial_pressure_when_scaled(x, 1.0 - step);
   // Nothing of the state has moved but these; the list of the next step is built anew and gives the same forces.
-  state_.x = x;
+  state_.take(before);
   forces_.set_results(results);
   forces_.walls() = walls;
   forces_.contact_list().invalidate();
@@ -192,7 +209,7 @@ std::array<double, 2> Stepper::extent_z() const {
   std::array<double, 2> extent = {1e300, -1e300};
   for (int g = 0; g < layout_.n_grains(); ++g) {
     for (int node = 0; node < layout_.n_nodes(g); ++node) {
-      const double z = state_.x[layout_.index(g, node, 2)];
+      const double z = state_.position(g, node)[2];
       extent = {std::min(extent[0], z), std::max(extent[1], z)};
     }
   }

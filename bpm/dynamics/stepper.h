@@ -5,7 +5,7 @@
 #include "bpm/dynamics/clamp.h"
 #include "bpm/dynamics/simulation.h"
 #include "bpm/forces/force_field.h"
-#include "bpm/packing/lane_layout.h"
+#include "bpm/packing/lane_state.h"
 
 #include <vector>
 
@@ -90,13 +90,15 @@ public:
   void restore(const SavedState& saved);
 
 private:
+  void save_nodes(SavedState& saved) const;
+  void restore_nodes(const SavedState& saved);
   void save_ends(SavedState& saved) const;
   void restore_ends(const SavedState& saved);
   void drift();
   void check_drift(const std::vector<kernels::DriftResult>& results) const;
   void evaluate(Evaluation what);
   void sum_up();
-  double virial_pressure_when_scaled(const AlignedVector& x, double factor);
+  double virial_pressure_when_scaled(const std::vector<Vector3>& x, double factor);
 
   Packing packing_;
   Material material_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <type_traits>
 
 namespace boba {
 
@@ -38,20 +39,14 @@ Snapshot Stepper::snapshot(Simulation::Parts parts) const {
   for (int g = 0; g < layout_.n_grains(); ++g) {
     Vector3 centre = Vector3::Zero();
     for (int node = 0; node < layout_.n_nodes(g); ++node) {
-      Vector3 x, v, f;
-      for (int c = 0; c < 3; ++c) {
-        const std::int64_t at = layout_.index(g, node, c);
-        x[c] = state_.x[at];
-        v[c] = state_.v[at];
-        f[c] = state_.f[at];
-      }
+      const Vector3 x = state_.position(g, node);
       snapshot.position.push_back(position_map_ * x + shift);
       centre += snapshot.position.back();
       if (parts.velocity) {
-        snapshot.velocity.push_back(v + back * f);
+        snapshot.velocity.push_back(state_.velocity(g, node) + back * state_.force(g, node));
       }
       if (parts.force) {
-        snapshot.force.push_back(f);
+        snapshot.force.push_back(state_.force(g, node));
       }
     }
     snapshot.grain_centre.push_back(centre / layout_.n_nodes(g));
@@ -67,8 +62,7 @@ Snapshot Stepper::snapshot(Simulation::Parts parts) const {
 }
 
 std::size_t Stepper::bytes() const {
-  return (state_.x.capacity() + state_.v.capacity() + state_.f.capacity()) * sizeof(double) +
-         forces_.contact_list().bytes() + (packing_.position.capacity() + packing_.velocity.capacity()) * sizeof(Vector3) +
+  return state_.bytes() + forces_.contact_list().bytes() + (packing_.position.capacity() + packing_.velocity.capacity()) * sizeof(Vector3) +
          packing_.id.capacity() * sizeof(std::int64_t);
 }
 
@@ -83,20 +77,20 @@ Matrix3 matrix(const std::vector<double>& numbers) {
   return Eigen::Map<const Matrix3>(numbers.data());
 }
 
-void copy_into(AlignedVector& to, const std::vector<double>& from, const char* name) {
+template <class Array, class Number>
+void copy_into(Array& to, const std::vector<Number>& from, const char* name) {
   if (from.size() != to.size()) {
-    throw std::runtime_error(std::string("saved state: ") + name + " belongs to another packing (" +
+    throw std::runtime_error(std::string("saved state: ") + name + " belongs to another packing or precision (" +
                              std::to_string(from.size()) + " numbers, " + std::to_string(to.size()) + " expected)");
   }
-  std::copy(from.begin(), from.end(), to.begin());
+  std::transform(from.begin(), from.end(), to.begin(),
+                 [](Number number) { return static_cast<typename Array::value_type>(number); });
 }
 
 } // namespace
 
 void Stepper::save(SavedState& saved) const {
-  saved.real["x"] = {state_.x.begin(), state_.x.end()};
-  saved.real["v"] = {state_.v.begin(), state_.v.end()};
-  saved.real["f"] = {state_.f.begin(), state_.f.end()};
+  save_nodes(saved);
   saved.real["box_h"] = flat(box_.h());
   saved.real["cell_map"] = flat(cell_map_);
   saved.real["position_map"] = flat(position_map_);
@@ -105,6 +99,40 @@ void Stepper::save(SavedState& saved) const {
   saved.integer["step"] = {step_};
   saved.integer["started"] = {started_ ? 1 : 0, forces_kept_ ? 1 : 0};
   save_ends(saved);
+}
+
+void Stepper::save_nodes(SavedState& saved) const {
+  state_.visit([&](const auto& arrays) {
+    if constexpr (std::is_integral_v<typename std::remove_reference_t<decltype(arrays)>::Coordinate>) {
+      saved.integer["x"] = {arrays.x.begin(), arrays.x.end()};
+      for (const Vector3& origin : state_.origins()) {
+        saved.real["origin"].insert(saved.real["origin"].end(), origin.data(), origin.data() + 3);
+      }
+    } else {
+      saved.real["x"] = {arrays.x.begin(), arrays.x.end()};
+    }
+    saved.real["v"] = {arrays.v.begin(), arrays.v.end()};
+    saved.real["f"] = {arrays.f.begin(), arrays.f.end()};
+  });
+}
+
+void Stepper::restore_nodes(const SavedState& saved) {
+  state_.visit([&](auto& arrays) {
+    if constexpr (std::is_integral_v<typename std::remove_reference_t<decltype(arrays)>::Coordinate>) {
+      copy_into(arrays.x, saved.integer.at("x"), "x");
+      const std::vector<double>& origins = saved.real.at("origin");
+      if (origins.size() != 3 * state_.origins().size()) {
+        throw std::runtime_error("saved state: the grains' origins belong to another packing");
+      }
+      for (std::size_t g = 0; g < state_.origins().size(); ++g) {
+        state_.origins()[g] = Eigen::Map<const Vector3>(&origins[3 * g]);
+      }
+    } else {
+      copy_into(arrays.x, saved.real.at("x"), "x");
+    }
+    copy_into(arrays.v, saved.real.at("v"), "v");
+    copy_into(arrays.f, saved.real.at("f"), "f");
+  });
 }
 
 void Stepper::save_ends(SavedState& saved) const {
@@ -119,8 +147,8 @@ void Stepper::save_ends(SavedState& saved) const {
   saved.integer["clamp_count"] = {static_cast<std::int64_t>(clamps_.size())};
   for (std::size_t k = 0; k < clamps_.size(); ++k) {
     const std::string name = "clamp" + std::to_string(k);
-    saved.integer[name + "_first"] = clamps_[k].first;
-    saved.integer[name + "_stride"] = {clamps_[k].stride.begin(), clamps_[k].stride.end()};
+    saved.integer[name + "_grain"] = clamps_[k].grain;
+    saved.integer[name + "_node"] = clamps_[k].node;
     saved.real[name] = {clamps_[k].velocity[0], clamps_[k].velocity[1], clamps_[k].velocity[2],
                         clamps_[k].force[0],    clamps_[k].force[1],    clamps_[k].force[2]};
   }
@@ -138,9 +166,8 @@ void Stepper::restore_ends(const SavedState& saved) {
   for (std::int64_t k = 0; k < saved.integer.at("clamp_count").at(0); ++k) {
     const std::string name = "clamp" + std::to_string(k);
     Clamp clamp;
-    clamp.first = saved.integer.at(name + "_first");
-    const std::vector<std::int64_t>& stride = saved.integer.at(name + "_stride");
-    clamp.stride.assign(stride.begin(), stride.end());
+    clamp.grain = saved.integer.at(name + "_grain");
+    clamp.node = saved.integer.at(name + "_node");
     const std::vector<double>& numbers = saved.real.at(name);
     clamp.velocity = {numbers.at(0), numbers.at(1), numbers.at(2)};
     clamp.force = {numbers.at(3), numbers.at(4), numbers.at(5)};
@@ -159,9 +186,7 @@ std::array<double, 2> Stepper::end_forces() const {
 }
 
 void Stepper::restore(const SavedState& saved) {
-  copy_into(state_.x, saved.real.at("x"), "x");
-  copy_into(state_.v, saved.real.at("v"), "v");
-  copy_into(state_.f, saved.real.at("f"), "f");
+  restore_nodes(saved);
   box_.set_h(matrix(saved.real.at("box_h")));
   cell_map_ = matrix(saved.real.at("cell_map"));
   position_map_ = matrix(saved.real.at("position_map"));

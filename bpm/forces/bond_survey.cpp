@@ -10,24 +10,19 @@ namespace boba {
 
 namespace {
 
-Vector3 node_at(const LaneState& state, const LaneLayout& layout, int grain, std::int64_t node) {
-  const std::int64_t at = layout.first(grain) + 3 * node * layout.stride(grain), stride = layout.stride(grain);
-  return {state.x[at], state.x[at + stride], state.x[at + 2 * stride]};
-}
-
 /// Calls visit(first node, length, undeformed length) for every bond of a grain, those across the boundary included.
 template <class Visit>
-void for_each_bond(const NetworkData& data, const LaneLayout& layout, const LaneState& state, const Box& box, int grain,
+void for_each_bond(const NetworkData& data, const LaneState& state, const Box& box, int grain,
                    Visit&& visit) {
   const kernels::Network network = data.view();
   for (int i = 0; i < network.n_nodes; ++i) {
-    const Vector3 xi = node_at(state, layout, grain, i);
+    const Vector3 xi = state.position(grain, i);
     for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
-      visit(i, (xi - node_at(state, layout, grain, network.bonds[b].other)).norm(), network.bonds[b].r0);
+      visit(i, (xi - state.position(grain, network.bonds[b].other)).norm(), network.bonds[b].r0);
     }
   }
   for (const ImageBond& bond : data.image_bonds()) {
-    const Vector3 d = node_at(state, layout, grain, bond.i) - node_at(state, layout, grain, bond.j);
+    const Vector3 d = state.position(grain, bond.i) - state.position(grain, bond.j);
     visit(bond.i, (d - box.h() * bond.n.cast<double>()).norm(), bond.r0);
   }
 }
@@ -38,7 +33,7 @@ double ForceField::bond_energy(const LaneState& state, const Box& box) const {
   std::vector<double> energy(layout_.n_grains(), 0.0);
 #pragma omp parallel for schedule(dynamic, 8)
   for (int g = 0; g < layout_.n_grains(); ++g) {
-    for_each_bond(*network_of_grain_[g], layout_, state, box, g,
+    for_each_bond(*network_of_grain_[g], state, box, g,
                   [&](int, double r, double r0) { energy[g] += boba::bond_energy(material_.k, r, r0); });
   }
   double total = 0.0;
@@ -52,7 +47,7 @@ ForceField::Stretch ForceField::largest_stretch(const LaneState& state, const Bo
   std::vector<Stretch> largest(layout_.n_grains());
 #pragma omp parallel for schedule(dynamic, 8)
   for (int g = 0; g < layout_.n_grains(); ++g) {
-    for_each_bond(*network_of_grain_[g], layout_, state, box, g, [&](int node, double r, double r0) {
+    for_each_bond(*network_of_grain_[g], state, box, g, [&](int node, double r, double r0) {
       if (!(r / r0 <= largest[g].ratio)) { // also true for NaN
         largest[g] = {r / r0, g, node};
       }

@@ -5,7 +5,7 @@
 #include "bpm/forces/contact_search.h"
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/forces/network_data.h"
-#include "bpm/packing/lane_layout.h"
+#include "bpm/packing/lane_state.h"
 
 #include <span>
 #include <vector>
@@ -97,6 +97,8 @@ private:
   // contact_tracking.cpp: grains
   void track(const LaneState& state);
   void track_block(int b, const LaneState& state);
+  /// Fits the frames of a block; returns which lanes are to look how far.
+  kernels::LaneFrames fit_frames(int b, const LaneState& state);
   void note_all(int grain, const LaneState& state);
   bool note_moved(int grain, const LaneState& state);
   bool out_of_shape(const TrackedGrain& grain, int n_nodes) const;
@@ -109,7 +111,7 @@ private:
   Matrix3 cell_since_tracking_ = Matrix3::Identity(), cell_since_neighbours_ = Matrix3::Identity();
   double guaranteed_ = 0.0; ///< all pairs of nodes that are not listed were farther apart when the grains were last tracked, d
   double crept_ = 0.0;      ///< bound on any node's motion since then beyond the cell's, d
-  std::vector<float, boost::alignment::aligned_allocator<float, 64>> place_; ///< X, lane layout, d
+  AlignedArray<float> place_; ///< X, lane layout, d
   std::vector<TrackedGrain> grains_;
   std::vector<ContactPair> pairs_; ///< sorted by a, b, image
   std::vector<std::vector<ContactSide>> sides_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a contact list follows its grains: frames, places of nodes, and how far they stray.
 #include "bpm/forces/contact_list.h"
+#include "bpm/forces/lane_kernels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,12 @@ namespace {
 constexpr double largest_moved_share = 0.1;
 /// Places are stored as floats: their rounding, up to hundreds of d from a grain's centre, stays below this, d.
 constexpr double rounding = 1e-4;
+
+template <class Coordinate, class Real>
+kernels::FrameArraysOf<Coordinate> frame_arrays_of(const Block& block, const LaneArrays<Coordinate, Real>& arrays,
+                                                   const float* places, double quantum) {
+  return {arrays.x.data() + block.offset, places + block.offset, block.n_nodes, block.n_lanes, quantum};
+}
 
 } // namespace
 
@@ -36,25 +43,26 @@ void ContactList::track(const LaneState& state) {
   }
 }
 
-void ContactList::track_block(int b, const LaneState& state) {
-  thread_local std::vector<std::int32_t> far;
+kernels::LaneFrames ContactList::fit_frames(int b, const LaneState& state) {
   const Block& block = layout_.blocks()[b];
-  const kernels::FrameArrays arrays = {state.x.data() + block.offset, place_.data() + block.offset, block.n_nodes,
-                                       block.n_lanes};
   kernels::FrameFit fit{};
   for (int lane = 0; lane < block.n_lanes; ++lane) {
-    for (int c = 0; c < 3 && block.grain[lane] >= 0; ++c) {
-      fit.origin[c][lane] = grains_[block.grain[lane]].frame.centre[c];
+    const int g = block.grain[lane];
+    for (int c = 0; c < 3 && g >= 0; ++c) {
+      fit.origin[c][lane] = grains_[g].frame.centre[c] - state.origin(g)[c];
     }
   }
-  table_.fit_frames(arrays, fit);
+  state.visit([&](const auto& arrays) {
+    kernels_of(table_, arrays).fit_frames(frame_arrays_of(block, arrays, place_.data(), state.quantum()), fit);
+  });
   kernels::LaneFrames frames{};
   for (int lane = 0; lane < block.n_lanes; ++lane) {
     frames.threshold2[lane] = 1e300; // an idle lane never strays
-    if (block.grain[lane] < 0) {
+    const int g = block.grain[lane];
+    if (g < 0) {
       continue;
     }
-    TrackedGrain& grain = grains_[block.grain[lane]];
+    TrackedGrain& grain = grains_[g];
     Matrix3 second;
     for (int c = 0; c < 9; ++c) {
       second(c / 3, c % 3) = fit.second[c][lane];
@@ -62,16 +70,25 @@ void ContactList::track_block(int b, const LaneState& state) {
     grain.frame.linear = second * grain.inverse_moments;
     for (int c = 0; c < 3; ++c) {
       grain.frame.centre[c] += fit.first[c][lane] / block.n_nodes;
-      frames.centre[c][lane] = grain.frame.centre[c];
+      frames.centre[c][lane] = grain.frame.centre[c] - state.origin(g)[c];
     }
     for (int c = 0; c < 9; ++c) {
       frames.f[c][lane] = grain.frame.linear(c / 3, c % 3);
     }
     frames.threshold2[lane] = far_share * skin_ * far_share * skin_;
   }
-  double largest2[block_lanes] = {};
+  return frames;
+}
+
+void ContactList::track_block(int b, const LaneState& state) {
+  thread_local std::vector<std::int32_t> far;
+  const Block& block = layout_.blocks()[b];
+  const kernels::LaneFrames frames = fit_frames(b, state);
+  double largest2[max_lanes] = {};
   far.resize(static_cast<std::size_t>(block.n_nodes) * block.n_lanes);
-  const std::int64_t n_far = table_.frame_residuals(arrays, frames, largest2, far.data());
+  const std::int64_t n_far = state.visit([&](const auto& arrays) {
+    return kernels_of(table_, arrays).frame_residuals(frame_arrays_of(block, arrays, place_.data(), state.quantum()), frames, largest2, far.data());
+  });
   for (std::int64_t k = 0; k < n_far; ++k) {
     grains_[block.grain[far[k] % block.n_lanes]].moved.push_back(far[k] / block.n_lanes);
   }
@@ -102,8 +119,7 @@ void ContactList::note_all(int g, const LaneState& state) {
   const auto finite = [](double x) { return std::isfinite(x) ? x : 0.0; };
   Vector3 mean = Vector3::Zero();
   for (int node = 0; node < n_nodes; ++node) {
-    const std::int64_t at = layout_.index(g, node, 0);
-    mean += Vector3(finite(state.x[at]), finite(state.x[at + stride]), finite(state.x[at + 2 * stride]));
+    mean += state.position(g, node).unaryExpr(finite);
   }
   mean /= n_nodes;
   const GrainFrame fresh = {Matrix3::Identity(), mean};
@@ -117,8 +133,9 @@ void ContactList::note_all(int g, const LaneState& state) {
   Matrix3 moments = Matrix3::Zero();
   for (int node = 0; node < n_nodes; ++node) {
     const std::int64_t at = layout_.index(g, node, 0);
+    const Vector3 x = (state.position(g, node) - mean).unaryExpr(finite);
     for (int c = 0; c < 3; ++c) {
-      place_[at + c * stride] = static_cast<float>(finite(state.x[at + c * stride] - mean[c]));
+      place_[at + c * stride] = static_cast<float>(x[c]);
       places[node][c] = place_[at + c * stride];
     }
     bounds.low = bounds.low.cwiseMin(places[node]);
@@ -142,7 +159,7 @@ bool ContactList::note_moved(int g, const LaneState& state) {
   const std::int64_t stride = layout_.stride(g);
   for (const std::int32_t node : grain.moved) {
     const std::int64_t at = layout_.index(g, node, 0);
-    const Vector3 x = back(Vector3(state.x[at], state.x[at + stride], state.x[at + 2 * stride]));
+    const Vector3 x = back(state.position(g, node));
     const Bounds& bounds = grain.grid.bounds();
     if (!((x - bounds.low).minCoeff() >= -bounds_margin && (bounds.high - x).minCoeff() >= -bounds_margin)) {
       return false;

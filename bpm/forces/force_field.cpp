@@ -2,12 +2,15 @@
 #include "bpm/forces/force_field.h"
 
 #include "bpm/forces/image_bonds.h"
+#include "bpm/forces/lane_kernels.h"
 
 #include <omp.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
+#include <type_traits>
 
 namespace boba {
 
@@ -25,10 +28,22 @@ ForceField::ForceField(const Packing& packing, const LaneLayout& layout, const M
     first_node_.push_back(n_nodes);
     n_nodes += network_of_grain_.back()->n_nodes();
   }
+  if (has_periodic_template_ && layout.precision() == Precision::mixed) {
+    throw std::invalid_argument("precision = \"mixed\" does not do networks that are bonded across the cell's boundary; "
+                                "allowed for them: \"double\"");
+  }
   contact_nodes_ = std::make_unique_for_overwrite<kernels::ContactNode[]>(n_nodes);
 }
 
 namespace {
+
+template <class Real> auto touch_kernel(const kernels::KernelTable& table) {
+  if constexpr (std::is_same_v<Real, float>) {
+    return table.mixed.add_touches;
+  } else {
+    return table.precise.add_touches;
+  }
+}
 
 constexpr double no_contact_r2 = 1e300;
 
@@ -58,13 +73,13 @@ void ForceField::contacts_between(ContactPair& pair, const Box& box, const Evalu
   pair.touches.assign(touches.begin(), touches.begin() + n_touching);
 }
 
-void ForceField::add_contacts(int grain, double* f, bool with_sums) {
+template <class Real> void ForceField::add_contacts(int grain, Real* f, bool with_sums) {
   kernels::ContactSums& sums = contact_sums_[grain];
   sums = {};
   sums.smallest_r2 = no_contact_r2;
   for (const ContactSide& side : contact_list_.sides(grain)) {
     const ContactPair& pair = contact_list_.pairs()[side.pair];
-    table_.add_touches(pair.touches.data(), static_cast<std::int64_t>(pair.touches.size()), side.sign, f, layout_.stride(grain));
+    (*touch_kernel<Real>(table_))(pair.touches.data(), static_cast<std::int64_t>(pair.touches.size()), side.sign, f, layout_.stride(grain));
     if (with_sums && !pair.touches.empty()) {
       for (int c = 0; c < 6; ++c) {
         sums.virial[c] += 0.5 * pair.sums.virial[c];
@@ -76,19 +91,28 @@ void ForceField::add_contacts(int grain, double* f, bool with_sums) {
   }
 }
 
-double ForceField::walls_on(int b, LaneState& state, std::size_t wall, double* f, bool with_sums) {
+template <class Real> double ForceField::walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums) {
+  const Block& block = layout_.blocks()[b];
   double total = 0.0;
-  for (const int grain : layout_.blocks()[b].grain) {
+  for (int lane = 0; lane < block.n_lanes; ++lane) {
+    const int grain = block.grain[lane];
     if (grain >= 0) {
-      total += add_wall_forces(walls_[wall], material_, layout_, grain, state, f, with_sums, contact_sums_[grain]);
+      const auto add = [&](int node, const Vector3& force) {
+        for (int c = 0; c < 3; ++c) {
+          f[(3 * static_cast<std::int64_t>(node) + c) * block.n_lanes + lane] += static_cast<Real>(force[c]);
+        }
+      };
+      total += add_wall_forces(walls_[wall], material_, layout_, grain, state, add, with_sums, contact_sums_[grain]);
     }
   }
   return total;
 }
 
-void ForceField::bonds_of(int b, LaneState& state, const Box& box, const Evaluation& what) {
+template <class Coordinate, class Real>
+void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>& lanes, const Box& box,
+                          const Evaluation& what) {
   // Scratch of one thread for all blocks: it stays in the cache, and memory is not asked for forces at all.
-  thread_local AlignedVector volume, force;
+  thread_local AlignedArray<Real> volume, force;
   const Block& block = layout_.blocks()[b];
   const NetworkData& network = networks_[block.template_index];
   const Matrix3 residual = what.residual_rate * box.h_inverse();
@@ -98,31 +122,36 @@ void ForceField::bonds_of(int b, LaneState& state, const Box& box, const Evaluat
                                               what.kick / material_.node_mass,
                                               what.half_kick / material_.node_mass,
                                               material_.node_mass,
-                                              {residual_x[0], residual_x[1], residual_x[2]},
-                                              -residual_x.dot(box.origin())};
+                                              {residual_x[0], residual_x[1], residual_x[2]}};
   const auto n_lane_nodes = static_cast<std::size_t>(block.n_nodes) * block.n_lanes;
   if (block.many_body) {
-    volume.assign(n_lane_nodes, 0.0);
+    volume.assign(n_lane_nodes, 0);
   }
-  force.assign(3 * n_lane_nodes, 0.0);
+  force.assign(3 * n_lane_nodes, 0);
+  double residual_shift[kernels::max_lanes] = {};
   for (int lane = 0; lane < block.n_lanes; ++lane) {
-    if (block.grain[lane] >= 0) {
-      add_contacts(block.grain[lane], force.data() + lane, what.virial != Virial::none);
+    const int grain = block.grain[lane];
+    if (grain >= 0) {
+      add_contacts(grain, force.data() + lane, what.virial != Virial::none);
+      residual_shift[lane] = residual_x.dot(state.origin(grain) - box.origin());
     }
   }
   for (std::size_t w = 0; w < walls_.size(); ++w) {
-    wall_forces_[w][b] = walls_on(b, state, w, force.data() - block.offset, what.virial != Virial::none);
+    wall_forces_[w][b] = walls_on(b, state, w, force.data(), what.virial != Virial::none);
   }
-  kernels::BlockArrays arrays = {state.x.data() + block.offset, state.v.data() + block.offset, force.data(),
-                                 volume.data(), block.alpha.data(), block.n_lanes};
+  kernels::BlockArraysOf<Coordinate, Real> arrays = {lanes.x.data() + block.offset, lanes.v.data() + block.offset,
+                                                     force.data(),  volume.data(),   block.alpha.data(),
+                                                     residual_shift, state.quantum(), block.n_lanes};
   kernels::LaneSums sums;
   ImageBondSums image_sums{};
-  if (!network.image_bonds().empty()) {
-    image_sums = add_image_bonds(network, material_, box, what.residual_rate, block.many_body, arrays);
+  if constexpr (std::is_same_v<Real, double>) { // the constructor refuses them in mixed precision
+    if (!network.image_bonds().empty()) {
+      image_sums = add_image_bonds(network, material_, box, what.residual_rate, block.many_body, arrays);
+    }
   }
-  table_.bonds(network.view(), arrays, parameters, block.many_body, what.virial, sums);
+  kernels_of(table_, lanes).bonds(network.view_as<Real>(), arrays, parameters, block.many_body, what.virial, sums);
   if (what.keep_forces) {
-    std::copy(force.begin(), force.end(), state.f.begin() + block.offset);
+    std::copy(force.begin(), force.end(), lanes.f.begin() + block.offset);
   }
   if (what.virial == Virial::none) {
     return;
@@ -153,19 +182,30 @@ void ForceField::collect(int b, const LaneState& state) {
 }
 
 void ForceField::collect(int grain, std::span<const std::int32_t> nodes, const LaneState& state) {
-  table_.collect(nodes.data(), static_cast<std::int64_t>(nodes.size()), state.x.data() + layout_.first(grain),
-                 state.v.data() + layout_.first(grain), layout_.stride(grain), contact_nodes_.get() + first_node_[grain]);
+  state.visit([&](const auto& lanes) {
+    kernels_of(table_, lanes)
+        .collect(nodes.data(), static_cast<std::int64_t>(nodes.size()), lanes.x.data() + layout_.first(grain),
+                 lanes.v.data() + layout_.first(grain), layout_.stride(grain), state.origin(grain).data(),
+                 state.quantum(), contact_nodes_.get() + first_node_[grain]);
+  });
 }
 
-kernels::DriftResult ForceField::drift_block(int b, LaneState& state, const kernels::Drift& drift) {
+kernels::DriftResult ForceField::drift_block(int b, LaneState& state, kernels::Drift drift) {
   const Block& block = layout_.blocks()[b];
-  std::array<std::size_t, block_lanes> collected{};
+  for (int lane = 0; lane < block.n_lanes; ++lane) {
+    const Vector3 residual(drift.residual[0], drift.residual[1], drift.residual[2]);
+    drift.lane_shift[lane] =
+        drift.residual_shift + (block.grain[lane] >= 0 ? residual.dot(state.origin(block.grain[lane])) : 0.0);
+  }
+  std::array<std::size_t, max_lanes> collected{};
   kernels::DriftResult result{};
   for (int node = 0; node < block.n_nodes; node += drift_chunk) {
     const int end = std::min(node + drift_chunk, block.n_nodes);
     const std::int64_t first = block.offset + 3 * static_cast<std::int64_t>(node) * block.n_lanes;
-    const kernels::DriftResult part =
-        table_.drift(state.x.data() + first, state.v.data() + first, end - node, block.n_lanes, drift);
+    const kernels::DriftResult part = state.visit([&](auto& lanes) {
+      return kernels_of(table_, lanes)
+          .drift(lanes.x.data() + first, lanes.v.data() + first, end - node, block.n_lanes, drift);
+    });
     result.largest_speed2 = std::max(result.largest_speed2, part.largest_speed2);
     result.checksum += part.checksum;
     for (int lane = 0; lane < block.n_lanes; ++lane) {
@@ -183,7 +223,8 @@ kernels::DriftResult ForceField::drift_block(int b, LaneState& state, const kern
   return result;
 }
 
-std::vector<kernels::DriftResult> ForceField::drift(LaneState& state, const kernels::Drift& drift) {
+std::vector<kernels::DriftResult> ForceField::drift(LaneState& state, kernels::Drift drift) {
+  drift.quantum = state.quantum();
   const int n_blocks = static_cast<int>(layout_.blocks().size());
   std::vector<kernels::DriftResult> results(n_blocks);
 #pragma omp parallel for schedule(dynamic, 1)
@@ -225,7 +266,7 @@ void ForceField::evaluate(LaneState& state, const Box& box, const Evaluation& wh
     kicked = omp_get_wtime();
 #pragma omp for schedule(dynamic, 1)
     for (int b = 0; b < n_blocks; ++b) {
-      bonds_of(b, state, box, what);
+      state.visit([&](auto& lanes) { bonds_of(b, state, lanes, box, what); });
     }
   }
   for (std::size_t w = 0; w < walls_.size(); ++w) {
@@ -242,14 +283,20 @@ void ForceField::evaluate(LaneState& state, const Box& box, const Evaluation& wh
   bond_seconds += omp_get_wtime() - kicked;
 }
 
-void ForceField::volumes_only(const LaneState& state) const {
-  AlignedVector volume;
-  for (const Block& block : layout_.blocks()) {
-    if (block.many_body) {
-      volume.assign(static_cast<std::size_t>(block.n_nodes) * block.n_lanes, 0.0);
-      table_.volumes(networks_[block.template_index].view(), state.x.data() + block.offset, volume.data(), block.n_lanes);
+void ForceField::volumes_only(LaneState& state) const {
+  state.visit([&](auto& lanes) {
+    using Arrays = std::remove_reference_t<decltype(lanes)>;
+    AlignedArray<typename Arrays::Real> volume;
+    for (const Block& block : layout_.blocks()) {
+      if (block.many_body) {
+        volume.assign(static_cast<std::size_t>(block.n_nodes) * block.n_lanes, 0);
+        kernels_of(table_, lanes)
+            .volumes(networks_[block.template_index].view_as<typename Arrays::Real>(),
+                     {lanes.x.data() + block.offset, nullptr, nullptr, volume.data(), nullptr, nullptr, state.quantum(),
+                      block.n_lanes});
+      }
     }
-  }
+  });
 }
 
 void ForceField::reduce_contacts() {

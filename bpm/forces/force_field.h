@@ -6,7 +6,7 @@
 #include "bpm/forces/network_data.h"
 #include "bpm/forces/wall.h"
 #include "bpm/laws/material.h"
-#include "bpm/packing/lane_layout.h"
+#include "bpm/packing/lane_state.h"
 
 #include <array>
 #include <memory>
@@ -53,7 +53,7 @@ public:
   ForceField(const Packing& packing, const LaneLayout& layout, const Material& material, double skin);
 
   /// Moves all nodes; per block, what the drift saw.
-  std::vector<kernels::DriftResult> drift(LaneState& state, const kernels::Drift& drift);
+  std::vector<kernels::DriftResult> drift(LaneState& state, kernels::Drift drift);
   /// Rebuilds the contact list when it must, and evaluates. Returns the sums of every grain (valid where asked for).
   void evaluate(LaneState& state, const Box& box, const Evaluation& what);
 
@@ -67,7 +67,7 @@ public:
   const Results& results() const { return results_; }
   void set_results(Results results) { results_ = std::move(results); }
   /// The node volumes of every block with alpha != 0, computed and dropped: the benchmark's share of the bond pass.
-  void volumes_only(const LaneState& state) const;
+  void volumes_only(LaneState& state) const;
   /// Pairwise elastic energy of all bonds, k d^2; a pass of its own, for rare use.
   double bond_energy(const LaneState& state, const Box& box) const;
   /// The bond with the largest r / r0, over all grains; a pass of its own, for rare use.
@@ -92,11 +92,13 @@ private:
   void prepare_contacts(const LaneState& state, const Box& box);
   void collect(int b, const LaneState& state);
   void collect(int grain, std::span<const std::int32_t> nodes, const LaneState& state);
-  kernels::DriftResult drift_block(int b, LaneState& state, const kernels::Drift& drift);
-  double walls_on(int b, LaneState& state, std::size_t wall, double* f, bool with_sums);
+  kernels::DriftResult drift_block(int b, LaneState& state, kernels::Drift drift);
+  template <class Real>
+  double walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums);
   void contacts_between(ContactPair& pair, const Box& box, const Evaluation& what);
-  void add_contacts(int grain, double* f, bool with_sums);
-  void bonds_of(int b, LaneState& state, const Box& box, const Evaluation& what);
+  template <class Real> void add_contacts(int grain, Real* f, bool with_sums);
+  template <class Coordinate, class Real>
+  void bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>& lanes, const Box& box, const Evaluation& what);
   void reduce_contacts();
 
   const LaneLayout& layout_;

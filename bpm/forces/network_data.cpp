@@ -28,11 +28,15 @@ NetworkData::NetworkData(const GrainTemplate& grain) : n_nodes_(grain.n_nodes())
   for (int i = 0; i < n_nodes_; ++i) {
     first_bond_[i + 1] += first_bond_[i];
   }
+  for (const kernels::BondRecord& bond : records_) {
+    single_records_.push_back({static_cast<float>(bond.r0), static_cast<float>(bond.inverse_r0),
+                               static_cast<float>(bond.inverse_volume), bond.other});
+  }
   std::int64_t reach = 0;
   for (int i = 0; i < n_nodes_; ++i) {
     reach = std::max<std::int64_t>(reach, i + 1);
     for (std::int64_t b = first_bond_[i]; b < first_bond_[i + 1]; ++b) {
-      reach = std::max(reach, records_[b].other + 1);
+      reach = std::max<std::int64_t>(reach, records_[b].other + 1);
     }
     reach_.push_back(reach);
   }

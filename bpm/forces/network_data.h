@@ -5,6 +5,7 @@
 #include "bpm/grain/grain_template.h"
 
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 namespace boba {
@@ -22,6 +23,14 @@ public:
   explicit NetworkData(const GrainTemplate& grain);
 
   kernels::Network view() const { return {n_nodes_, first_bond_.data(), records_.data(), reach_.data()}; }
+  /// The same in the numbers that a kernel computes with, double or float.
+  template <class Real> kernels::NetworkOf<Real> view_as() const {
+    if constexpr (std::is_same_v<Real, float>) {
+      return {n_nodes_, first_bond_.data(), single_records_.data(), reach_.data()};
+    } else {
+      return view();
+    }
+  }
   int n_nodes() const { return n_nodes_; }
   std::int64_t n_bonds() const { return static_cast<std::int64_t>(records_.size() + image_bonds_.size()); }
   const std::vector<ImageBond>& image_bonds() const { return image_bonds_; }
@@ -35,6 +44,7 @@ private:
   int n_nodes_ = 0;
   std::vector<std::int64_t> first_bond_;
   std::vector<kernels::BondRecord> records_;
+  std::vector<kernels::BondRecordOf<float>> single_records_;
   std::vector<std::int64_t> reach_;
   std::vector<ImageBond> image_bonds_;
   std::vector<std::int64_t> first_partner_;

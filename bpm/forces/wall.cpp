@@ -8,23 +8,19 @@
 namespace boba {
 
 double add_wall_forces(const Wall& wall, const Material& material, const LaneLayout& layout, int grain,
-                       const LaneState& state, double* f, bool with_sums, kernels::ContactSums& sums) {
-  const std::int64_t first = layout.first(grain), stride = layout.stride(grain);
+                       const LaneState& state, LaneForce f, bool with_sums, kernels::ContactSums& sums) {
   const double reach = 0.5 * material.diameter;
   double total = 0.0;
-  for (std::int64_t node = 0; node < layout.n_nodes(grain); ++node) {
-    const std::int64_t at = first + 3 * node * stride;
-    const Vector3 x(state.x[at], state.x[at + stride], state.x[at + 2 * stride]);
+  for (int node = 0; node < layout.n_nodes(grain); ++node) {
+    const Vector3 x = state.position(grain, node);
     const double z = wall.normal.dot(x - wall.point);
     if (z >= reach) {
       continue;
     }
-    const Vector3 v(state.v[at], state.v[at + stride], state.v[at + 2 * stride]);
+    const Vector3 v = state.velocity(grain, node);
     const double force = wall_force(material.k, material.k3, material.gamma, material.diameter, z,
                                     wall.normal.dot(v - wall.velocity));
-    for (int c = 0; c < 3; ++c) {
-      f[at + c * stride] += force * wall.normal[c];
-    }
+    f(node, force * wall.normal);
     total += force;
     if (with_sums) {
       // The pair is node and wall; half of its virial r f with r = 2 z n is z n (x) f n.

@@ -4,7 +4,9 @@
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/laws/material.h"
 #include "bpm/packing/box.h"
-#include "bpm/packing/lane_layout.h"
+#include "bpm/packing/lane_state.h"
+
+#include <functional>
 
 namespace boba {
 
@@ -17,9 +19,12 @@ struct Wall {
   double force = 0.0; ///< of the material on the wall, against the normal, k d; set by every evaluation
 };
 
-/// Adds one wall's forces on one grain to `f` (indexed like the arrays of the state) and returns their sum along the normal. The virial (position of the
-/// contact plane times force) goes to the sums when asked for.
+/// Adds a force to a node of the grain at hand.
+using LaneForce = std::function<void(int node, const Vector3& force)>;
+
+/// Hands one wall's forces on one grain to `f` and returns their sum along the normal. The virial (position of the contact
+/// plane times force) goes to the sums when asked for.
 double add_wall_forces(const Wall& wall, const Material& material, const LaneLayout& layout, int grain,
-                       const LaneState& state, double* f, bool with_sums, kernels::ContactSums& sums);
+                       const LaneState& state, LaneForce f, bool with_sums, kernels::ContactSums& sums);
 
 } // namespace boba

@@ -11,7 +11,9 @@ int Block::n_grains() const {
   return static_cast<int>(std::count_if(grain.begin(), grain.end(), [](int g) { return g >= 0; }));
 }
 
-LaneLayout::LaneLayout(const Packing& packing) : slots_(packing.grains.size()) {
+LaneLayout::LaneLayout(const Packing& packing, Precision precision)
+    : precision_(precision), slots_(packing.grains.size()) {
+  const int block_lanes = lanes_of_block(precision);
   std::map<std::pair<int, bool>, std::vector<int>> groups;
   for (int g = 0; g < packing.n_grains(); ++g) {
     const Grain& grain = packing.grains[g];
@@ -21,8 +23,8 @@ LaneLayout::LaneLayout(const Packing& packing) : slots_(packing.grains.size()) {
     for (std::size_t begin = 0; begin < members.size(); begin += block_lanes) {
       const std::size_t end = std::min(begin + block_lanes, members.size());
       const std::vector<int> grains(members.begin() + begin, members.begin() + end);
-      // One grain alone costs less as scalars than as one of eight lanes.
-      add_block(packing, grains, grains.size() == 1 ? 1 : block_lanes);
+      // One grain alone costs less as scalars than as one of eight lanes; up to eight of sixteen fill half a register.
+      add_block(packing, grains, grains.size() == 1 ? 1 : grains.size() <= 8 ? 8 : block_lanes);
     }
   }
 }
@@ -43,7 +45,7 @@ void LaneLayout::add_block(const Packing& packing, const std::vector<int>& grain
     slots_[g] = {block.offset + lane, n_lanes, block.n_nodes, static_cast<int>(blocks_.size()), lane};
   }
   const std::int64_t numbers = 3 * static_cast<std::int64_t>(block.n_nodes) * n_lanes;
-  size_ += (numbers + 7) / 8 * 8; // every block starts on a cache line
+  size_ += (numbers + 15) / 16 * 16; // every block starts on a cache line
   blocks_.push_back(std::move(block));
 }
 
@@ -54,30 +56,6 @@ double LaneLayout::filled() const {
     all += static_cast<double>(block.n_lanes) * block.n_nodes;
   }
   return used / all;
-}
-
-LaneState::LaneState(const Packing& packing, const LaneLayout& layout)
-    : x(layout.size(), 0.0), v(layout.size(), 0.0), f(layout.size(), 0.0) {
-  for (const Block& block : layout.blocks()) {
-    const GrainTemplate& undeformed = *packing.templates[block.template_index];
-    for (int node = 0; node < block.n_nodes; ++node) {
-      for (int c = 0; c < 3; ++c) {
-        for (int lane = 0; lane < block.n_lanes; ++lane) {
-          x[block.offset + (3 * static_cast<std::int64_t>(node) + c) * block.n_lanes + lane] =
-              undeformed.position[node][c];
-        }
-      }
-    }
-  }
-  const std::vector<std::int64_t> first = packing.first_nodes();
-  for (int g = 0; g < layout.n_grains(); ++g) {
-    for (int node = 0; node < layout.n_nodes(g); ++node) {
-      for (int c = 0; c < 3; ++c) {
-        x[layout.index(g, node, c)] = packing.position[first[g] + node][c];
-        v[layout.index(g, node, c)] = packing.velocity[first[g] + node][c];
-      }
-    }
-  }
 }
 
 } // namespace boba

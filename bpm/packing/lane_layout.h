@@ -3,21 +3,26 @@
 
 #include "bpm/packing/packing.h"
 
-#include <boost/align/aligned_allocator.hpp>
-
 #include <cstdint>
 #include <vector>
 
 namespace boba {
 
-/// Lanes of a full block: the doubles of one 512-bit register. Narrower registers take a block in two or four goes.
-inline constexpr int block_lanes = 8;
+/// How positions, velocities and forces are stored while a packing moves.
+enum class Precision {
+  full, ///< doubles
+  mixed ///< positions in 32-bit fixed point from their grain's origin, the rest in floats
+};
+
+/// Lanes of a full block: the doubles or floats of one 512-bit register. Narrower registers take a block in several goes.
+constexpr int lanes_of_block(Precision precision) { return precision == Precision::full ? 8 : 16; }
+inline constexpr int max_lanes = 16;
 
 /// One block: up to `n_lanes` grains of one template that advance together.
 struct Block {
   int template_index = 0;
   int n_nodes = 0;
-  int n_lanes = block_lanes;    ///< block_lanes, or 1 for a network that only one grain has
+  int n_lanes = 8;              ///< 16, 8, or 1 for a network that only one grain has
   std::int64_t offset = 0;      ///< of the block's first number in the arrays of LaneState
   bool many_body = false;       ///< some lane has alpha != 0
   std::vector<int> grain;       ///< per lane; -1 marks an idle lane
@@ -33,7 +38,9 @@ struct Block {
 /// apart from the others, so that a block without many-body forces never computes volumes.
 class LaneLayout {
 public:
-  explicit LaneLayout(const Packing& packing);
+  explicit LaneLayout(const Packing& packing, Precision precision = Precision::full);
+
+  Precision precision() const { return precision_; }
 
   const std::vector<Block>& blocks() const { return blocks_; }
   int n_grains() const { return static_cast<int>(slots_.size()); }
@@ -56,20 +63,10 @@ private:
   };
   void add_block(const Packing& packing, const std::vector<int>& grains, int n_lanes);
 
+  Precision precision_;
   std::vector<Block> blocks_;
   std::vector<Slot> slots_;
   std::int64_t size_ = 0;
-};
-
-/// Array whose first element lies on a cache line.
-using AlignedVector = std::vector<double, boost::alignment::aligned_allocator<double, 64>>;
-
-/// Positions, velocities and forces in the lane layout. `v` holds half-step velocities between steps (see Stepper).
-struct LaneState {
-  AlignedVector x, v, f;
-
-  /// Copies the packing in; idle lanes get the undeformed template at rest, so that they stay finite and cheap.
-  LaneState(const Packing& packing, const LaneLayout& layout);
 };
 
 } // namespace boba

@@ -25,10 +25,8 @@ struct FrameStress::Impl {
   void place(const Snapshot& snapshot) {
     for (int g = 0; g < layout.n_grains(); ++g) {
       for (int node = 0; node < layout.n_nodes(g); ++node, ++next) {
-        for (int c = 0; c < 3; ++c) {
-          state.x[layout.index(g, node, c)] = snapshot.position[next][c];
-          state.v[layout.index(g, node, c)] = snapshot.velocity.empty() ? 0.0 : snapshot.velocity[next][c];
-        }
+        state.set_position(g, node, snapshot.position[next]);
+        state.set_velocity(g, node, snapshot.velocity.empty() ? Vector3(Vector3::Zero()) : snapshot.velocity[next]);
       }
     }
     next = 0;
@@ -40,10 +38,7 @@ struct FrameStress::Impl {
     const double back = 0.5 * dt / material.node_mass;
     for (int g = 0; g < layout.n_grains(); ++g) {
       for (int node = 0; node < layout.n_nodes(g); ++node, ++next) {
-        for (int c = 0; c < 3; ++c) {
-          const std::int64_t at = layout.index(g, node, c);
-          state.v[at] = snapshot.velocity[next][c] - back * state.f[at];
-        }
+        state.set_velocity(g, node, snapshot.velocity[next] - back * state.force(g, node));
       }
     }
     next = 0;

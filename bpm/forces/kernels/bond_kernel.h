@@ -8,23 +8,23 @@
 
 namespace {
 
-using boba::kernels::BlockArrays;
+using boba::kernels::BlockArraysOf;
 using boba::kernels::BondParameters;
-using boba::kernels::BondRecord;
+using boba::kernels::BondRecordOf;
 using boba::kernels::LaneSums;
-using boba::kernels::Network;
+using boba::kernels::NetworkOf;
 using boba::kernels::Virial;
 
 template <class V> struct Triple {
   V c[3];
 };
 
-template <class V> inline Triple<V> load3(const double* from, std::int64_t node, int stride) {
-  const double* at = from + 3 * node * stride;
+template <class V, class T> inline Triple<V> load3(const T* from, std::int64_t node, int stride) {
+  const T* at = from + 3 * node * stride;
   return {{load<V>(at), load<V>(at + stride), load<V>(at + 2 * stride)}};
 }
-template <class V> inline void store3(double* to, std::int64_t node, int stride, const Triple<V>& value) {
-  double* at = to + 3 * node * stride;
+template <class V, class T> inline void store3(T* to, std::int64_t node, int stride, const Triple<V>& value) {
+  T* at = to + 3 * node * stride;
   store<V>(at, value.c[0]);
   store<V>(at + stride, value.c[1]);
   store<V>(at + 2 * stride, value.c[2]);
@@ -32,20 +32,28 @@ template <class V> inline void store3(double* to, std::int64_t node, int stride,
 template <class V> inline Triple<V> difference(const Triple<V>& a, const Triple<V>& b) {
   return {{a.c[0] - b.c[0], a.c[1] - b.c[1], a.c[2] - b.c[2]}};
 }
+template <class S, class P = typename S::P, class V = typename S::V>
+inline Triple<V> separation(const Triple<P>& a, const Triple<P>& b, V quantum) {
+  return {{S::distance(a.c[0], b.c[0], quantum), S::distance(a.c[1], b.c[1], quantum),
+           S::distance(a.c[2], b.c[2], quantum)}};
+}
 template <class V> inline V dot(const Triple<V>& a, const Triple<V>& b) {
   return multiply_add(a.c[2], b.c[2], multiply_add(a.c[1], b.c[1], a.c[0] * b.c[0]));
 }
 
-/// Adds r^3 of the bonds of the nodes [begin, end) to the volumes of both of their nodes.
-template <class V>
-void node_volumes(const Network& network, const double* x, double* volume, int stride, std::int64_t begin,
-                  std::int64_t end) {
+/// Adds r^3 of the bonds of the nodes [begin, end) to the volumes of both of their nodes. Pointers start at the first lane.
+template <class S, class Coordinate = typename S::Coordinate, class Real = typename S::Real>
+void node_volumes(const NetworkOf<Real>& network, const Coordinate* x, Real* volume, int stride, double quantum,
+                  std::int64_t begin, std::int64_t end) {
+  using V = typename S::V;
+  using P = typename S::P;
+  const V q = splat<V>(quantum);
   for (std::int64_t i = begin; i < end; ++i) {
-    const Triple<V> xi = load3<V>(x, i, stride);
+    const Triple<P> xi = load3<P>(x, i, stride);
     V sum = load<V>(volume + i * stride);
     for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
       const std::int64_t j = network.bonds[b].other;
-      const Triple<V> d = difference(xi, load3<V>(x, j, stride));
+      const Triple<V> d = separation<S>(xi, load3<P>(x, j, stride), q);
       const V r2 = dot(d, d);
       const V cube = r2 * r2 * inverse_sqrt(r2);
       sum += cube;
@@ -55,14 +63,11 @@ void node_volumes(const Network& network, const double* x, double* volume, int s
   }
 }
 
-void volumes_of_nodes(const Network& network, const double* x, double* volume, int n_lanes) {
-  if (n_lanes == 1) {
-    node_volumes<double>(network, x, volume, 1, 0, network.n_nodes);
-    return;
-  }
-  for (int lane = 0; lane < n_lanes; lane += native_lanes) {
-    node_volumes<Wide>(network, x + lane, volume + lane, n_lanes, 0, network.n_nodes);
-  }
+template <class Coordinate, class Real>
+void volumes_of_nodes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a) {
+  for_lanes<Coordinate>(a.n_lanes, [&](int lane, auto storage) {
+    node_volumes<decltype(storage)>(network, a.x + lane, a.volume + lane, a.n_lanes, a.quantum, 0, network.n_nodes);
+  });
 }
 
 /// xx yy zz xy xz yz and the trace. The trace is summed apart, so that the barostat sees the same number whether
@@ -87,23 +92,42 @@ template <Virial virial, class V> inline void add_dyad(Tensor<V>& sum, V s, cons
   }
 }
 
-template <class V> void store_tensor(const Tensor<V>& sum, double (*to)[8], int lane) {
+/// What one node adds goes to sums in double, whatever it was computed in.
+template <Virial virial, class V> inline void add_to(Tensor<DoublesOf<V>>& sum, const Tensor<V>& node) {
+  if constexpr (virial != Virial::none) {
+    sum.c[6] += converted<DoublesOf<V>>(node.c[6]);
+  }
+  if constexpr (virial == Virial::full) {
+    for (int c = 0; c < 6; ++c) {
+      sum.c[c] += converted<DoublesOf<V>>(node.c[c]);
+    }
+  }
+}
+
+template <class D> void store_tensor(const Tensor<D>& sum, double (*to)[boba::kernels::max_lanes], int lane) {
   for (int c = 0; c < 7; ++c) {
-    store<V>(&to[c][lane], sum.c[c]);
+    store<D>(&to[c][lane], sum.c[c]);
   }
 }
 
 /// One pass over the nodes. A node's force is complete when its own bonds are done, since bonds to earlier nodes were
 /// added when those were visited; nobody needs its velocity any more, so it is kicked on the spot.
-template <class V, bool many_body, bool damped, Virial virial>
-void bond_lanes(const Network& network, const BlockArrays& a, const BondParameters& p, int lane, LaneSums& sums) {
+template <class S, bool many_body, bool damped, Virial virial, class Coordinate = typename S::Coordinate,
+          class Real = typename S::Real>
+void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a, const BondParameters& p,
+                int lane, LaneSums& sums) {
+  using V = typename S::V;
+  using P = typename S::P;
   const int stride = a.n_lanes;
-  const double* x = a.x + lane;
-  double* v = a.v + lane;
-  double* f = a.f + lane;
-  double* volume = a.volume + lane;
-  const V alpha = load<V>(a.alpha + lane);
-  Tensor<V> stress{}, kinetic{};
+  const Coordinate* x = a.x + lane;
+  Real* v = a.v + lane;
+  Real* f = a.f + lane;
+  Real* volume = a.volume + lane;
+  const V alpha = load_doubles<V>(a.alpha + lane);
+  const V q = splat<V>(a.quantum), kick = splat<V>(p.kick), half_kick = splat<V>(p.half_kick), mass = splat<V>(p.mass);
+  const V residual_shift = load_doubles<V>(a.residual_shift + lane);
+  const auto k = static_cast<Real>(p.k), gamma = static_cast<Real>(p.gamma);
+  Tensor<DoublesOf<V>> stress{}, kinetic{};
   std::int64_t volumes_done = 0;
   for (std::int64_t i = 0; i < network.n_nodes; ++i) {
     if constexpr (many_body) {
@@ -112,21 +136,22 @@ void bond_lanes(const Network& network, const BlockArrays& a, const BondParamete
       if (network.reach[i] > volumes_done) {
         const std::int64_t ahead = boba::kernels::volume_chunk;
         const std::int64_t end = network.reach[i] + ahead < network.n_nodes ? network.reach[i] + ahead : network.n_nodes;
-        node_volumes<V>(network, x, volume, stride, volumes_done, end);
+        node_volumes<S>(network, x, volume, stride, a.quantum, volumes_done, end);
         volumes_done = end;
       }
     }
-    const Triple<V> xi = load3<V>(x, i, stride);
+    const Triple<P> xi = load3<P>(x, i, stride);
     const Triple<V> vi = load3<V>(v, i, stride);
     Triple<V> fi = load3<V>(f, i, stride);
+    Tensor<V> node_stress{};
     V volume_i{};
     if constexpr (many_body) {
       volume_i = load<V>(volume + i * stride);
     }
     for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
-      const BondRecord& bond = network.bonds[b];
+      const BondRecordOf<Real>& bond = network.bonds[b];
       const std::int64_t j = bond.other;
-      const Triple<V> d = difference(xi, load3<V>(x, j, stride));
+      const Triple<V> d = separation<S>(xi, load3<P>(x, j, stride), q);
       const V r2 = dot(d, d);
       const V inverse_r = inverse_sqrt(r2);
       const V r = r2 * inverse_r;
@@ -137,9 +162,9 @@ void bond_lanes(const Network& network, const BlockArrays& a, const BondParamete
       V force;
       if constexpr (many_body) {
         const V ratio = (volume_i + load<V>(volume + j * stride)) * bond.inverse_volume;
-        force = boba::bond_force(p.k, alpha, p.gamma, r, bond.r0, bond.inverse_r0, cube_root(ratio), normal_velocity);
+        force = boba::bond_force(k, alpha, gamma, r, bond.r0, bond.inverse_r0, cube_root(ratio), normal_velocity);
       } else {
-        force = boba::bond_force_pairwise(p.k, p.gamma, r, bond.r0, normal_velocity);
+        force = boba::bond_force_pairwise(k, gamma, r, bond.r0, normal_velocity);
       }
       const V s = force * inverse_r;
       Triple<V> fj = load3<V>(f, j, stride);
@@ -148,54 +173,54 @@ void bond_lanes(const Network& network, const BlockArrays& a, const BondParamete
         fj.c[c] = subtract_product(fj.c[c], s, d.c[c]);
       }
       store3<V>(f, j, stride, fj);
-      add_dyad<virial>(stress, s, d, r2);
+      add_dyad<virial>(node_stress, s, d, r2);
     }
+    add_to<virial>(stress, node_stress);
     store3<V>(f, i, stride, fi);
     Triple<V> kicked, full;
     for (int c = 0; c < 3; ++c) {
-      full.c[c] = multiply_add(splat<V>(p.half_kick), fi.c[c], vi.c[c]);
-      kicked.c[c] = multiply_add(splat<V>(p.kick), fi.c[c], vi.c[c]);
+      full.c[c] = multiply_add(half_kick, fi.c[c], vi.c[c]);
+      kicked.c[c] = multiply_add(kick, fi.c[c], vi.c[c]);
     }
     store3<V>(v, i, stride, kicked);
     if constexpr (virial != Virial::none) {
-      full.c[0] -= p.residual[0] * xi.c[0] + p.residual[1] * xi.c[1] + p.residual[2] * xi.c[2] + p.residual_shift;
+      V streaming = residual_shift;
+      for (int c = 0; c < 3; ++c) {
+        streaming = multiply_add(splat<V>(p.residual[c]), S::value(xi.c[c], q), streaming);
+      }
+      full.c[0] -= streaming;
     }
-    add_dyad<virial>(kinetic, splat<V>(p.mass), full, dot(full, full));
+    Tensor<V> node_kinetic{};
+    add_dyad<virial>(node_kinetic, mass, full, dot(full, full));
+    add_to<virial>(kinetic, node_kinetic);
   }
   store_tensor(stress, sums.virial, lane);
   store_tensor(kinetic, sums.kinetic, lane);
 }
 
-template <class V, bool many_body, bool damped>
-void bond_lanes(const Network& network, const BlockArrays& a, const BondParameters& p, Virial virial, LaneSums& sums) {
-  for (int lane = 0; lane < a.n_lanes; lane += lanes_of<V>) {
+template <bool many_body, bool damped, class Coordinate, class Real>
+void bond_block(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a, const BondParameters& p,
+                Virial virial, LaneSums& sums) {
+  for_lanes<Coordinate>(a.n_lanes, [&](int lane, auto storage) {
+    using S = decltype(storage);
     switch (virial) {
-    case Virial::none: bond_lanes<V, many_body, damped, Virial::none>(network, a, p, lane, sums); break;
-    case Virial::trace: bond_lanes<V, many_body, damped, Virial::trace>(network, a, p, lane, sums); break;
-    case Virial::full: bond_lanes<V, many_body, damped, Virial::full>(network, a, p, lane, sums); break;
+    case Virial::none: bond_lanes<S, many_body, damped, Virial::none>(network, a, p, lane, sums); break;
+    case Virial::trace: bond_lanes<S, many_body, damped, Virial::trace>(network, a, p, lane, sums); break;
+    case Virial::full: bond_lanes<S, many_body, damped, Virial::full>(network, a, p, lane, sums); break;
     }
-  }
+  });
 }
 
-template <class V>
-void bond_lanes(const Network& network, const BlockArrays& a, const BondParameters& p, bool many_body, Virial virial,
-                LaneSums& sums) {
-  const bool damped = p.gamma != 0.0;
+template <class Coordinate, class Real>
+void bond_forces(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& arrays,
+                 const BondParameters& parameters, bool many_body, Virial virial, LaneSums& sums) {
+  const bool damped = parameters.gamma != 0.0;
   if (many_body) {
-    damped ? bond_lanes<V, true, true>(network, a, p, virial, sums)
-           : bond_lanes<V, true, false>(network, a, p, virial, sums);
+    damped ? bond_block<true, true>(network, arrays, parameters, virial, sums)
+           : bond_block<true, false>(network, arrays, parameters, virial, sums);
   } else {
-    damped ? bond_lanes<V, false, true>(network, a, p, virial, sums)
-           : bond_lanes<V, false, false>(network, a, p, virial, sums);
-  }
-}
-
-void bond_forces(const Network& network, const BlockArrays& arrays, const BondParameters& parameters, bool many_body,
-                 Virial virial, LaneSums& sums) {
-  if (arrays.n_lanes == 1) {
-    bond_lanes<double>(network, arrays, parameters, many_body, virial, sums);
-  } else {
-    bond_lanes<Wide>(network, arrays, parameters, many_body, virial, sums);
+    damped ? bond_block<false, true>(network, arrays, parameters, virial, sums)
+           : bond_block<false, false>(network, arrays, parameters, virial, sums);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "bpm/laws/contact.h"
 
 #include <cmath>
+#include <type_traits>
 
 namespace {
 
@@ -16,13 +17,18 @@ using boba::kernels::ContactSums;
 using boba::kernels::NodePair;
 using boba::kernels::Touch;
 
-void collect_nodes(const std::int32_t* nodes, std::int64_t n, const double* x, const double* v, int stride,
-                   ContactNode* to) {
+template <class Coordinate, class Real>
+void collect_nodes(const std::int32_t* nodes, std::int64_t n, const Coordinate* x, const Real* v, int stride,
+                   const double* origin, double quantum, ContactNode* to) {
   for (std::int64_t k = 0; k < n; ++k) {
     const std::int64_t from = 3 * static_cast<std::int64_t>(nodes[k]) * stride;
     ContactNode& node = to[nodes[k]];
     for (int c = 0; c < 3; ++c) {
-      node.x[c] = x[from + c * stride];
+      if constexpr (std::is_same_v<Coordinate, std::int32_t>) {
+        node.x[c] = origin[c] + quantum * x[from + c * stride];
+      } else {
+        node.x[c] = x[from + c * stride];
+      }
       node.v[c] = v[from + c * stride];
     }
   }
@@ -92,12 +98,12 @@ std::int64_t contact_forces(const ContactCandidates& candidates, const ContactPa
   return n;
 }
 
-void add_touches(const Touch* touches, std::int64_t n, double sign, double* f, int stride) {
+template <class Real> void add_touches(const Touch* touches, std::int64_t n, double sign, Real* f, int stride) {
   for (std::int64_t t = 0; t < n; ++t) {
     const NodePair& nodes = touches[t].nodes;
-    double* to = f + 3 * static_cast<std::int64_t>(sign > 0.0 ? nodes.i : nodes.j) * stride;
+    Real* to = f + 3 * static_cast<std::int64_t>(sign > 0.0 ? nodes.i : nodes.j) * stride;
     for (int c = 0; c < 3; ++c) {
-      to[c * stride] += sign * touches[t].force[c];
+      to[c * stride] += static_cast<Real>(sign * touches[t].force[c]);
     }
   }
 }

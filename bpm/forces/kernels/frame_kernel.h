@@ -7,30 +7,29 @@
 
 namespace {
 
-using boba::kernels::FrameArrays;
+using boba::kernels::FrameArraysOf;
 using boba::kernels::FrameFit;
 using boba::kernels::LaneFrames;
 
-inline double widened(const float* from, double) { return *from; }
-inline Wide widened(const float* from, Wide) {
-  WideFloat value;
-  std::memcpy(&value, from, sizeof value);
-  return __builtin_convertvector(value, Wide);
-}
+template <class V> inline V load_floats(const float* from) { return converted<V>(load<Vector<float, lanes_of<V>>>(from)); }
 
-template <class V> void fit_lanes(const FrameArrays& a, int lane, FrameFit& fit) {
+template <class S, class Coordinate = typename S::Coordinate>
+void fit_lanes(const FrameArraysOf<Coordinate>& a, int lane, FrameFit& fit) {
+  using V = typename S::V;
+  using P = typename S::P;
+  const V q = splat<V>(a.quantum);
   V origin[3], first[3] = {}, second[9] = {};
   for (int c = 0; c < 3; ++c) {
-    origin[c] = load<V>(&fit.origin[c][lane]);
+    origin[c] = load_doubles<V>(&fit.origin[c][lane]);
   }
   for (std::int64_t node = 0; node < a.n_nodes; ++node) {
     const std::int64_t at = 3 * node * a.n_lanes + lane;
     V reference[3];
     for (int c = 0; c < 3; ++c) {
-      reference[c] = widened(a.reference + at + c * a.n_lanes, V{});
+      reference[c] = load_floats<V>(a.reference + at + c * a.n_lanes);
     }
     for (int row = 0; row < 3; ++row) {
-      const V x = load<V>(a.x + at + row * a.n_lanes) - origin[row];
+      const V x = S::value(load<P>(a.x + at + row * a.n_lanes), q) - origin[row];
       first[row] += x;
       for (int column = 0; column < 3; ++column) {
         second[3 * row + column] = multiply_add(x, reference[column], second[3 * row + column]);
@@ -38,64 +37,67 @@ template <class V> void fit_lanes(const FrameArrays& a, int lane, FrameFit& fit)
     }
   }
   for (int c = 0; c < 3; ++c) {
-    store<V>(&fit.first[c][lane], first[c]);
+    store_doubles<V>(&fit.first[c][lane], first[c]);
   }
   for (int c = 0; c < 9; ++c) {
-    store<V>(&fit.second[c][lane], second[c]);
+    store_doubles<V>(&fit.second[c][lane], second[c]);
   }
 }
 
-void fit_frames(const FrameArrays& arrays, FrameFit& fit) {
-  if (arrays.n_lanes == 1) {
-    fit_lanes<double>(arrays, 0, fit);
-    return;
+template <class Coordinate> void fit_frames(const FrameArraysOf<Coordinate>& arrays, FrameFit& fit) {
+  for_lanes<Coordinate>(arrays.n_lanes, [&](int lane, auto storage) { fit_lanes<decltype(storage)>(arrays, lane, fit); });
+}
+
+template <class V> inline bool any_above(V r2, V limit) {
+  if constexpr (lanes_of<V> == 1) {
+    return !(r2 <= limit);
+  } else {
+    const auto below = r2 <= limit;
+    bool all = true;
+    for (int l = 0; l < lanes_of<V>; ++l) {
+      all &= below[l] != 0;
+    }
+    return !all;
   }
-  for (int lane = 0; lane < arrays.n_lanes; lane += native_lanes) {
-    fit_lanes<Wide>(arrays, lane, fit);
+}
+template <class V> inline auto lane_of(V v, int l) {
+  if constexpr (lanes_of<V> == 1) {
+    return v;
+  } else {
+    return v[l];
   }
 }
 
-inline double at_most(double r2, double limit) { return r2 <= limit ? r2 : 0.0; }
-inline Wide at_most(Wide r2, Wide limit) { return r2 <= limit ? r2 : Wide{}; }
-inline bool any_above(double r2, double limit) { return !(r2 <= limit); }
-inline bool any_above(Wide r2, Wide limit) {
-  const auto above = ~(r2 <= limit);
-  bool any = false;
-  for (int l = 0; l < native_lanes; ++l) {
-    any |= above[l] != 0;
-  }
-  return any;
-}
-inline double lane_of(double v, int) { return v; }
-inline double lane_of(Wide v, int l) { return v[l]; }
-
-template <class V>
-std::int64_t residual_lanes(const FrameArrays& a, const LaneFrames& frames, int lane, double* largest2,
+template <class S, class Coordinate = typename S::Coordinate>
+std::int64_t residual_lanes(const FrameArraysOf<Coordinate>& a, const LaneFrames& frames, int lane, double* largest2,
                             std::int32_t* far) {
+  using V = typename S::V;
+  using P = typename S::P;
+  const V q = splat<V>(a.quantum);
   V f[9], centre[3];
   for (int c = 0; c < 9; ++c) {
-    f[c] = load<V>(&frames.f[c][lane]);
+    f[c] = load_doubles<V>(&frames.f[c][lane]);
   }
   for (int c = 0; c < 3; ++c) {
-    centre[c] = load<V>(&frames.centre[c][lane]);
+    centre[c] = load_doubles<V>(&frames.centre[c][lane]);
   }
-  const V limit = load<V>(frames.threshold2 + lane);
+  const V limit = load_doubles<V>(frames.threshold2 + lane);
   V largest{};
   std::int64_t n_far = 0;
   for (std::int64_t node = 0; node < a.n_nodes; ++node) {
     const std::int64_t at = 3 * node * a.n_lanes + lane;
     V reference[3], r2{};
     for (int c = 0; c < 3; ++c) {
-      reference[c] = widened(a.reference + at + c * a.n_lanes, V{});
+      reference[c] = load_floats<V>(a.reference + at + c * a.n_lanes);
     }
     for (int row = 0; row < 3; ++row) {
-      V d = load<V>(a.x + at + row * a.n_lanes) - centre[row];
+      V d = S::value(load<P>(a.x + at + row * a.n_lanes), q) - centre[row];
       for (int column = 0; column < 3; ++column) {
         d = subtract_product(d, f[3 * row + column], reference[column]);
       }
       r2 = multiply_add(d, d, r2);
     }
-    largest = larger(largest, at_most(r2, limit));
+    largest = larger(largest, r2 <= limit ? r2 : V{});
     if (__builtin_expect(any_above(r2, limit), 0)) {
       for (int l = 0; l < lanes_of<V>; ++l) {
         if (!(lane_of(r2, l) <= lane_of(limit, l))) {
@@ -104,18 +106,17 @@ std::int64_t residual_lanes(const FrameArrays& a, const LaneFrames& frames, int 
       }
     }
   }
-  store<V>(largest2 + lane, largest);
+  store_doubles<V>(largest2 + lane, largest);
   return n_far;
 }
 
-std::int64_t frame_residuals(const FrameArrays& arrays, const LaneFrames& frames, double* largest2, std::int32_t* far) {
-  if (arrays.n_lanes == 1) {
-    return residual_lanes<double>(arrays, frames, 0, largest2, far);
-  }
+template <class Coordinate>
+std::int64_t frame_residuals(const FrameArraysOf<Coordinate>& arrays, const LaneFrames& frames, double* largest2,
+                             std::int32_t* far) {
   std::int64_t n_far = 0;
-  for (int lane = 0; lane < arrays.n_lanes; lane += native_lanes) {
-    n_far += residual_lanes<Wide>(arrays, frames, lane, largest2, far + n_far);
-  }
+  for_lanes<Coordinate>(arrays.n_lanes, [&](int lane, auto storage) {
+    n_far += residual_lanes<decltype(storage)>(arrays, frames, lane, largest2, far + n_far);
+  });
   return n_far;
 }
 

@@ -14,7 +14,13 @@
 namespace boba::kernels {
 
 extern const KernelTable BOBA_KERNEL_TABLE = {
-    BOBA_STRINGIFY(BOBA_KERNEL_ISA), native_lanes,   &volumes_of_nodes, &bond_forces,     &drift_block, &collect_nodes,
-    &contact_forces,                 &add_touches,   &fit_frames,       &frame_residuals, &near_places};
+    BOBA_STRINGIFY(BOBA_KERNEL_ISA),
+    {&volumes_of_nodes<double, double>, &bond_forces<double, double>, &drift_block<double, double>,
+     &collect_nodes<double, double>, &add_touches<double>, &fit_frames<double>, &frame_residuals<double>},
+    {&volumes_of_nodes<std::int32_t, float>, &bond_forces<std::int32_t, float>, &drift_block<std::int32_t, float>,
+     &collect_nodes<std::int32_t, float>, &add_touches<float>, &fit_frames<std::int32_t>,
+     &frame_residuals<std::int32_t>},
+    &contact_forces,
+    &near_places};
 
 } // namespace boba::kernels

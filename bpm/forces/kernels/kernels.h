@@ -10,36 +10,51 @@
 
 namespace boba::kernels {
 
-/// One bond as the hot loop reads it: grouped by its first node.
-struct BondRecord {
-  double r0, inverse_r0, inverse_volume; ///< d, 1/d, 1 / (V0_i + V0_j) in 1/d^3
-  std::int64_t other;                    ///< the second node, larger than the first
-};
+/// Most grains that a block holds.
+inline constexpr int max_lanes = 16;
 
-struct Network {
+// Every kernel of the lane arrays exists for two ways to store them:
+//   double: positions, velocities and forces are doubles;
+//   mixed:  positions are 32-bit integers, multiples of a quantum from the grain's origin; the rest are floats.
+// `Coordinate` is the type of a position's component (double, std::int32_t), `Real` that of the rest (double, float).
+
+/// One bond as the hot loop reads it: grouped by its first node.
+template <class Real> struct BondRecordOf {
+  Real r0, inverse_r0, inverse_volume; ///< d, 1/d, 1 / (V0_i + V0_j) in 1/d^3
+  std::int32_t other;                  ///< the second node, larger than the first
+};
+using BondRecord = BondRecordOf<double>;
+
+template <class Real> struct NetworkOf {
   int n_nodes;
   const std::int64_t* first_bond; ///< n_nodes + 1
-  const BondRecord* bonds;
+  const BondRecordOf<Real>* bonds;
   const std::int64_t* reach; ///< per node i: 1 + the last node that a bond of any node up to i joins
 };
+using Network = NetworkOf<double>;
 
 /// Nodes whose volumes are computed at a go, beyond what the forces need next.
 inline constexpr std::int64_t volume_chunk = 64;
 
 /// Forces are added to what `f` holds (contacts come first). Arrays start at the block; `volume` is scratch
 /// [node][lane] that holds the volumes of bonds evaluated elsewhere (images), usually zero.
-struct BlockArrays {
-  double *x, *v, *f, *volume;
-  const double* alpha; ///< per lane
+template <class Coordinate, class Real> struct BlockArraysOf {
+  Coordinate* x;
+  Real *v, *f, *volume;
+  const double* alpha;          ///< per lane
+  const double* residual_shift; ///< per lane, see BondParameters
+  double quantum;               ///< d; not read when coordinates are doubles
   int n_lanes;
 };
+using BlockArrays = BlockArraysOf<double, double>;
 
 struct BondParameters {
   double k, gamma;
   double kick;         ///< v += kick f, once a node's force is complete: dt/m, dt/2m at the start, 0 to look only
   double half_kick;    ///< full-step velocity = v + half_kick f, for the kinetic part of the stress
   double mass;
-  double residual[3], residual_shift; ///< streaming velocity along x: residual . x + residual_shift, not counted as kinetic
+  /// Streaming velocity along x, not counted as kinetic: residual . x + the lane's shift, x as the arrays hold it.
+  double residual[3];
 };
 
 /// How much of the virial and the kinetic tensor a pass sums up.
@@ -48,8 +63,8 @@ enum class Virial { none, trace, full };
 /// Per lane of a block. Virial: sum of r_ij f_ij (compression positive); kinetic: sum of m v v. Order xx yy zz xy xz yz
 /// trace; with Virial::trace only the last is summed up.
 struct LaneSums {
-  double virial[7][8];
-  double kinetic[7][8];
+  double virial[7][max_lanes];
+  double kinetic[7][max_lanes];
 };
 
 struct Drift {
@@ -59,6 +74,9 @@ struct Drift {
   /// The cell's motion along x that does not act on positions, to be taken from velocities before their size is
   /// measured: u_x = v_x - (residual . x + residual_shift).
   double residual[3], residual_shift;
+  double quantum;   ///< d; mixed only
+  double dither;    ///< 0 .. 1 quanta, another one each step; mixed only
+  double lane_shift[max_lanes]; ///< residual_shift, with the lane's origin; mixed only
 };
 
 /// What a drift saw: enough to know how long a contact list stays valid and whether the run has blown up.
@@ -106,23 +124,24 @@ struct ContactSums {
 };
 
 /// Positions of a block and the places of its nodes in their grains' frames, [node][component][lane].
-struct FrameArrays {
-  const double* x;
+template <class Coordinate> struct FrameArraysOf {
+  const Coordinate* x;
   const float* reference;
   int n_nodes, n_lanes;
+  double quantum; ///< d; mixed only
 };
 
 /// Per lane: a point near the grain, and sums of x - origin and of (x - origin) (x) reference, row by row.
 struct FrameFit {
-  double origin[3][8];
-  double first[3][8];
-  double second[9][8];
+  double origin[3][max_lanes];
+  double first[3][max_lanes];
+  double second[9][max_lanes];
 };
 
 /// Per lane: x = f X + centre, and the square of the distance above which a node counts as far.
 struct LaneFrames {
-  double f[9][8], centre[3][8];
-  double threshold2[8];
+  double f[9][max_lanes], centre[3][max_lanes];
+  double threshold2[max_lanes];
 };
 
 /// Nodes of one grain, sorted by cell; columns of coordinates, d.
@@ -130,26 +149,33 @@ struct SortedNodes {
   const double *x, *y, *z;
 };
 
+/// The kernels that walk through lane arrays.
+template <class Coordinate, class Real> struct LaneKernels {
+  /// volume[node][lane] += r^3 of every bond, at both of its nodes.
+  void (*volumes)(const NetworkOf<Real>&, const BlockArraysOf<Coordinate, Real>&);
+  void (*bonds)(const NetworkOf<Real>&, const BlockArraysOf<Coordinate, Real>&, const BondParameters&, bool many_body,
+                Virial, LaneSums&);
+  DriftResult (*drift)(Coordinate* x, const Real* v, int n_nodes, int n_lanes, const Drift&);
+  /// to[node] of every listed node of one grain: its position (origin + what the arrays hold) and velocity.
+  void (*collect)(const std::int32_t* nodes, std::int64_t n, const Coordinate* x, const Real* v, int stride,
+                  const double* origin, double quantum, ContactNode* to);
+  /// Adds sign times the forces to node i (sign = 1) or j (-1) of a grain's lane.
+  void (*add_touches)(const Touch* touches, std::int64_t n, double sign, Real* f, int stride);
+  /// Sums over the nodes of a block for the frames of its grains.
+  void (*fit_frames)(const FrameArraysOf<Coordinate>&, FrameFit&);
+  /// Distances of nodes from where their frames put them: the largest below the lane's threshold, and the places
+  /// node * n_lanes + lane above it, which are written into `far` (room for all); returns their number.
+  std::int64_t (*frame_residuals)(const FrameArraysOf<Coordinate>&, const LaneFrames&, double* largest2,
+                                  std::int32_t* far);
+};
+
 struct KernelTable {
   const char* name; ///< "avx512", "avx2" or "baseline"
-  int lanes;
-  /// volume[node][lane] += r^3 of every bond, at both of its nodes.
-  void (*volumes)(const Network&, const double* x, double* volume, int n_lanes);
-  void (*bonds)(const Network&, const BlockArrays&, const BondParameters&, bool many_body, Virial, LaneSums&);
-  DriftResult (*drift)(double* x, const double* v, int n_nodes, int n_lanes, const Drift&);
-  /// to[node] of every listed node of one grain: its position and velocity from its lane.
-  void (*collect)(const std::int32_t* nodes, std::int64_t n, const double* x, const double* v, int stride,
-                  ContactNode* to);
+  LaneKernels<double, double> precise;
+  LaneKernels<std::int32_t, float> mixed;
   /// Writes the contacts among the candidates into `touches` (room for all of them) and returns their number.
   std::int64_t (*contacts)(const ContactCandidates&, const ContactParameters&, Touch* touches, bool with_sums,
                            ContactSums&);
-  /// Adds sign times the forces to node i (sign = 1) or j (-1) of a grain's lane.
-  void (*add_touches)(const Touch* touches, std::int64_t n, double sign, double* f, int stride);
-  /// Sums over the nodes of a block for the frames of its grains.
-  void (*fit_frames)(const FrameArrays&, FrameFit&);
-  /// Distances of nodes from where their frames put them: the largest below the lane's threshold, and the places
-  /// node * n_lanes + lane above it, which are written into `far` (room for all); returns their number.
-  std::int64_t (*frame_residuals)(const FrameArrays&, const LaneFrames&, double* largest2, std::int32_t* far);
   /// Writes the places in [begin, end) closer than sqrt(reach2) to p into `found`, ascending, and returns their number.
   /// `found` has room for end - begin + 8 numbers.
   std::int32_t (*near_places)(const SortedNodes&, std::int32_t begin, std::int32_t end, const double* p, double reach2,

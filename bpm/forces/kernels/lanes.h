@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <cstring>
 #include <initializer_list>
+#include <type_traits>
+#include <utility>
 
 #if defined(__AVX2__)
 #include <immintrin.h>
@@ -21,23 +23,62 @@ constexpr int native_lanes = 4;
 constexpr int native_lanes = 2;
 #endif
 
-/// The widest register of doubles of this instruction set; + - * / and comparisons act lane by lane.
-using Wide = double __attribute__((vector_size(8 * native_lanes)));
-using WideFloat = float __attribute__((vector_size(4 * native_lanes)));
-using WideInt = std::int32_t __attribute__((vector_size(4 * native_lanes)));
+/// Vectors of N numbers; + - * / and comparisons act lane by lane.
+template <class T, int N> struct VectorOf {
+  using Type __attribute__((vector_size(sizeof(T) * N))) = T;
+};
+template <class T> struct VectorOf<T, 1> {
+  using Type = T;
+};
+template <class T, int N> using Vector = typename VectorOf<T, N>::Type;
 
-template <class V> constexpr int lanes_of = 1;
-template <> constexpr int lanes_of<Wide> = native_lanes;
+/// The widest register of doubles of this instruction set, that of floats, and as many floats as there are doubles.
+using Wide = Vector<double, native_lanes>;
+using WideFloat = Vector<float, native_lanes>;
+using WideInt = Vector<std::int32_t, native_lanes>;
+using WideSingle = Vector<float, 2 * native_lanes>;
 
-template <class V> inline V load(const double* from) {
+template <class V> constexpr int lanes_of = sizeof(V) / sizeof(std::declval<V>()[0]);
+template <> constexpr int lanes_of<double> = 1;
+template <> constexpr int lanes_of<float> = 1;
+template <> constexpr int lanes_of<std::int32_t> = 1;
+
+/// The number type of a vector, and vectors of other types with as many lanes.
+template <class V> struct ElementOf {
+  using Type = std::remove_cvref_t<decltype(std::declval<V>()[0])>;
+};
+template <> struct ElementOf<double> {
+  using Type = double;
+};
+template <> struct ElementOf<float> {
+  using Type = float;
+};
+template <class V> using Element = typename ElementOf<V>::Type;
+template <class V> using IntsOf = Vector<std::int32_t, lanes_of<V>>;
+template <class V> using DoublesOf = Vector<double, lanes_of<V>>;
+
+template <class To, class From> inline To converted(From from) {
+  if constexpr (lanes_of<To> == 1) {
+    return static_cast<To>(from);
+  } else {
+    return __builtin_convertvector(from, To);
+  }
+}
+
+template <class V, class T> inline V load(const T* from) {
   V value;
   std::memcpy(&value, from, sizeof(V));
   return value;
 }
-template <class V> inline void store(double* to, V value) { std::memcpy(to, &value, sizeof(V)); }
+template <class V, class T> inline void store(T* to, V value) { std::memcpy(to, &value, sizeof(V)); }
 
-template <class V> inline V splat(double value) { return value - V{}; }
-template <> inline double splat<double>(double value) { return value; }
+template <class V> inline V splat(double value) {
+  if constexpr (lanes_of<V> == 1) {
+    return static_cast<V>(value);
+  } else {
+    return static_cast<Element<V>>(value) - V{};
+  }
+}
 
 /// a * b + c and c - a * b, fused where the machine can. Written out because the compiler is told not to contract by itself:
 /// two versions of a loop (with and without a virial) must give the same forces to the last bit.
@@ -57,27 +98,54 @@ inline Wide multiply_add(Wide a, Wide b, Wide c) {
   return a * b + c;
 #endif
 }
-inline double subtract_product(double c, double a, double b) { return multiply_add(-a, b, c); }
-inline Wide subtract_product(Wide c, Wide a, Wide b) { return multiply_add(-a, b, c); }
-
-inline double larger(double a, double b) { return a > b ? a : b; }
-inline Wide larger(Wide a, Wide b) { return a > b ? a : b; }
-
-inline double sum_of(double v) { return v; }
-inline double sum_of(Wide v) {
-  double sum = 0.0;
-  for (int l = 0; l < native_lanes; ++l) {
-    sum += v[l];
-  }
-  return sum;
+inline float multiply_add(float a, float b, float c) {
+#if defined(__FMA__)
+  return __builtin_fmaf(a, b, c);
+#else
+  return a * b + c;
+#endif
 }
-inline double largest_of(double v) { return v; }
-inline double largest_of(Wide v) {
-  double largest = v[0];
-  for (int l = 1; l < native_lanes; ++l) {
-    largest = larger(largest, v[l]);
+inline WideSingle multiply_add(WideSingle a, WideSingle b, WideSingle c) {
+#if defined(__AVX512F__)
+  return (WideSingle)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+#elif defined(__FMA__)
+  return (WideSingle)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
+#else
+  return a * b + c;
+#endif
+}
+inline WideFloat multiply_add(WideFloat a, WideFloat b, WideFloat c) {
+#if defined(__AVX512F__)
+  return (WideFloat)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
+#else
+  return a * b + c;
+#endif
+}
+template <class V> inline V subtract_product(V c, V a, V b) { return multiply_add(-a, b, c); }
+
+template <class V> inline V larger(V a, V b) { return a > b ? a : b; }
+
+template <class V> inline double sum_of(V v) {
+  if constexpr (lanes_of<V> == 1) {
+    return v;
+  } else {
+    double sum = 0.0;
+    for (int l = 0; l < lanes_of<V>; ++l) {
+      sum += v[l];
+    }
+    return sum;
   }
-  return largest;
+}
+template <class V> inline double largest_of(V v) {
+  if constexpr (lanes_of<V> == 1) {
+    return v;
+  } else {
+    double largest = v[0];
+    for (int l = 1; l < lanes_of<V>; ++l) {
+      largest = largest > v[l] ? largest : v[l];
+    }
+    return largest;
+  }
 }
 
 inline double inverse_sqrt(double x) { return 1.0 / std::sqrt(x); }
@@ -105,7 +173,57 @@ inline Wide inverse_sqrt(Wide x) {
 #endif
 }
 
+inline float inverse_sqrt(float x) { return 1.0f / std::sqrt(x); }
+
+/// One step on the hardware's estimate of 1/sqrt(x): to about one unit in a float's last place.
+template <class V> inline V improved_inverse_sqrt(V x, V y) {
+  return y * subtract_product(splat<V>(1.5), 0.5f * x * y, y);
+}
+inline WideSingle inverse_sqrt(WideSingle x) {
+#if defined(__AVX512F__)
+  return improved_inverse_sqrt(x, (WideSingle)_mm512_maskz_rsqrt14_ps(0xffff, (__m512)x));
+#elif defined(__AVX2__)
+  return improved_inverse_sqrt(x, (WideSingle)_mm256_rsqrt_ps((__m256)x));
+#else
+  WideSingle y;
+  for (int l = 0; l < 2 * native_lanes; ++l) {
+    y[l] = 1.0f / std::sqrt(x[l]);
+  }
+  return y;
+#endif
+}
+inline WideFloat inverse_sqrt(WideFloat x) {
+#if defined(__AVX512F__)
+  return improved_inverse_sqrt(x, (WideFloat)_mm256_maskz_rsqrt14_ps(0xff, (__m256)x));
+#else
+  WideFloat y;
+  for (int l = 0; l < native_lanes; ++l) {
+    y[l] = 1.0f / std::sqrt(x[l]);
+  }
+  return y;
+#endif
+}
+
 inline double cube_root(double x) { return std::cbrt(x); }
+inline float cube_root(float x) { return std::cbrt(x); }
+
+template <class V> inline bool any_outside(V x, double low, double high) {
+#if defined(__AVX512F__)
+  if constexpr (std::is_same_v<V, Wide>) {
+    return _mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(low), _CMP_LT_OQ) |
+           _mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(high), _CMP_GT_OQ);
+  }
+  if constexpr (std::is_same_v<V, WideSingle>) {
+    return _mm512_cmp_ps_mask((__m512)x, _mm512_set1_ps(static_cast<float>(low)), _CMP_LT_OQ) |
+           _mm512_cmp_ps_mask((__m512)x, _mm512_set1_ps(static_cast<float>(high)), _CMP_GT_OQ);
+  }
+#endif
+  bool outside = false;
+  for (int l = 0; l < lanes_of<V>; ++l) {
+    outside |= (x[l] < low) | (x[l] > high);
+  }
+  return outside;
+}
 
 /// x^(1/3) for 1e-30 < x < 1e30, without division: y = x^(-1/3) from the exponent bits, two steps of the series
 /// (1 - h)^(-1/3) = 1 + h/3 + 2h^2/9 + 14h^3/81, h = 1 - x y^3 (the first in float), then x y^2.
@@ -123,31 +241,42 @@ inline Wide cube_root_of_any(Wide x) {
   return x * z * z;
 }
 
-inline bool any_outside(Wide x, double low, double high) {
-#if defined(__AVX512F__)
-  return _mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(low), _CMP_LT_OQ) |
-         _mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(high), _CMP_GT_OQ);
-#else
-  bool outside = false;
-  for (int l = 0; l < native_lanes; ++l) {
-    outside |= (x[l] < low) | (x[l] > high);
+/// x^(-1/3) to 3.3e-4 over [1/2, 2]: the polynomial of degree 5 with the least relative error.
+template <class V> inline V near_inverse_cube_root(V x) {
+  const V t = x - static_cast<Element<V>>(1.0);
+  V y = splat<V>(-0.07066835568187121);
+  for (const double c : {0.17781975688620016, -0.20453628969115334, 0.22143791401899482, -0.33058278061251845,
+                         0.9999736554168059}) {
+    y = multiply_add(y, t, splat<V>(c));
   }
-  return outside;
-#endif
+  return y;
 }
 
-/// x^(1/3) to a few units in the last place. Volume ratios are near 1: there a polynomial of degree 5 (least relative error
-/// over [1/2, 2], 3.3e-4) gives x^(-1/3), and one step of the series above up to h^4 does the rest.
+/// x^(1/3) for floats: the polynomial and one step of the series up to h^2. Far from 1, where no grain in one piece is, lane by
+/// lane.
+template <class V> inline V cube_root_single(V x) {
+  if (__builtin_expect(any_outside(x, 0.5, 2.0), 0)) {
+    V result{};
+    for (int l = 0; l < lanes_of<V>; ++l) {
+      result[l] = std::cbrt(x[l]);
+    }
+    return result;
+  }
+  const V y = near_inverse_cube_root(x);
+  const V h = subtract_product(splat<V>(1.0), x * y, y * y);
+  const V z = multiply_add(y, h * multiply_add(h, splat<V>(2.0 / 9.0), splat<V>(1.0 / 3.0)), y);
+  return x * z * z;
+}
+inline WideSingle cube_root(WideSingle x) { return cube_root_single(x); }
+inline WideFloat cube_root(WideFloat x) { return cube_root_single(x); }
+
+/// x^(1/3) to a few units in the last place. Volume ratios are near 1: there a polynomial gives x^(-1/3), and
+/// one step of the series above up to h^4 does the rest.
 inline Wide cube_root(Wide x) {
   if (__builtin_expect(any_outside(x, 0.5, 2.0), 0)) {
     return cube_root_of_any(x);
   }
-  const Wide t = x - 1.0;
-  Wide y = splat<Wide>(-0.07066835568187121);
-  for (const double c : {0.17781975688620016, -0.20453628969115334, 0.22143791401899482, -0.33058278061251845,
-                         0.9999736554168059}) {
-    y = multiply_add(y, t, splat<Wide>(c));
-  }
+  const Wide y = near_inverse_cube_root(x);
   const Wide h = subtract_product(splat<Wide>(1.0), x * y, y * y);
   Wide series = splat<Wide>(35.0 / 243.0);
   for (const double c : {14.0 / 81.0, 2.0 / 9.0, 1.0 / 3.0}) {
@@ -156,5 +285,51 @@ inline Wide cube_root(Wide x) {
   const Wide z = multiply_add(y, h * series, y);
   return x * z * z;
 }
+
+/// How lane arrays are stored and computed with. V: the numbers of some lanes; P: as many coordinates.
+template <class V_, class Coordinate_> struct Storage {
+  using V = V_;
+  using Coordinate = Coordinate_;
+  using Real = Element<V>;
+  static constexpr bool fixed_point = std::is_same_v<Coordinate, std::int32_t>;
+  using P = std::conditional_t<fixed_point, Vector<std::int32_t, lanes_of<V>>, V>;
+
+  /// a - b, d. Integers are subtracted exactly before they become floats.
+  static V distance(P a, P b, V quantum) {
+    if constexpr (fixed_point) {
+      return converted<V>(a - b) * quantum;
+    } else {
+      return a - b;
+    }
+  }
+  /// The coordinate itself, d.
+  static V value(P a, V quantum) {
+    if constexpr (fixed_point) {
+      return converted<V>(a) * quantum;
+    } else {
+      return a;
+    }
+  }
+};
+
+/// Calls visit(lane, Storage) for every run of lanes of a block that fills a register.
+template <class Coordinate, class Visit> inline void for_lanes(int n_lanes, Visit&& visit) {
+  constexpr bool mixed = std::is_same_v<Coordinate, std::int32_t>;
+  using Scalar = std::conditional_t<mixed, float, double>;
+  using Full = std::conditional_t<mixed, WideSingle, Wide>;
+  if (n_lanes == 1) {
+    visit(0, Storage<Scalar, Coordinate>{});
+  } else if (n_lanes % lanes_of<Full> == 0) {
+    for (int lane = 0; lane < n_lanes; lane += lanes_of<Full>) {
+      visit(lane, Storage<Full, Coordinate>{});
+    }
+  } else if constexpr (mixed && native_lanes == 8) { // eight floats in half a register
+    visit(0, Storage<WideFloat, Coordinate>{});
+  }
+}
+
+/// Numbers of the lanes as V, from doubles and back.
+template <class V> inline V load_doubles(const double* from) { return converted<V>(load<DoublesOf<V>>(from)); }
+template <class V> inline void store_doubles(double* to, V value) { store<DoublesOf<V>>(to, converted<DoublesOf<V>>(value)); }
 
 } // namespace

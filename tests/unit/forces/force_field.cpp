@@ -27,8 +27,7 @@ Evaluated evaluate(const Packing& packing, Virial virial, const Material& materi
   Evaluated evaluated;
   for (int g = 0; g < packing.n_grains(); ++g) {
     for (int node = 0; node < layout.n_nodes(g); ++node) {
-      evaluated.force.emplace_back(state.f[layout.index(g, node, 0)], state.f[layout.index(g, node, 1)],
-                                   state.f[layout.index(g, node, 2)]);
+      evaluated.force.push_back(state.force(g, node));
     }
     const Tensor6& t = forces.grain_sums()[g].virial;
     Matrix3 m;

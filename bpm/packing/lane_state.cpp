@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/packing/lane_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace boba {
+
+namespace {
+
+/// The power of two that lets coordinates reach four times the radius of the largest template.
+double quantum_for(const Packing& packing) {
+  double radius = 1.0;
+  for (const auto& grain_template : packing.templates) {
+    for (const Vector3& x : grain_template->position) {
+      radius = std::max(radius, x.norm());
+    }
+  }
+  return std::ldexp(1.0, static_cast<int>(std::ceil(std::log2(4.0 * radius))) - 31);
+}
+
+template <class Array> Vector3 triple(const Array& array, std::int64_t at, std::int64_t stride) {
+  return {static_cast<double>(array[at]), static_cast<double>(array[at + stride]), static_cast<double>(array[at + 2 * stride])};
+}
+
+template <class Array> void set_triple(Array& array, std::int64_t at, std::int64_t stride, const Vector3& value) {
+  using T = typename Array::value_type;
+  for (int c = 0; c < 3; ++c) {
+    if constexpr (std::is_integral_v<T>) {
+      array[at + c * stride] = static_cast<T>(std::lround(value[c]));
+    } else {
+      array[at + c * stride] = static_cast<T>(value[c]);
+    }
+  }
+}
+
+} // namespace
+
+LaneState::LaneState(const Packing& packing, const LaneLayout& layout)
+    : layout_(layout), origin_(layout.n_grains(), Vector3::Zero()) {
+  visit([&](auto& arrays) {
+    arrays.x.assign(layout.size(), 0);
+    arrays.v.assign(layout.size(), 0);
+    arrays.f.assign(layout.size(), 0);
+  });
+  quantum_ = precision() == Precision::mixed ? quantum_for(packing) : 1.0;
+  for (const Block& block : layout.blocks()) {
+    const GrainTemplate& undeformed = *packing.templates[block.template_index];
+    for (std::int64_t node = 0; node < block.n_nodes; ++node) {
+      for (int lane = 0; lane < block.n_lanes; ++lane) {
+        visit([&](auto& arrays) {
+          set_triple(arrays.x, block.offset + 3 * node * block.n_lanes + lane, block.n_lanes,
+                     undeformed.position[node] / quantum_);
+        });
+      }
+    }
+  }
+  const std::vector<std::int64_t> first = packing.first_nodes();
+  for (int g = 0; g < layout.n_grains(); ++g) {
+    if (precision() == Precision::mixed) {
+      for (int node = 0; node < layout.n_nodes(g); ++node) {
+        origin_[g] += packing.position[first[g] + node] / layout.n_nodes(g);
+      }
+    }
+    for (int node = 0; node < layout.n_nodes(g); ++node) {
+      set_position(g, node, packing.position[first[g] + node]);
+      set_velocity(g, node, packing.velocity[first[g] + node]);
+    }
+  }
+}
+
+Vector3 LaneState::position(int grain, int node) const {
+  const Vector3 x = visit([&](const auto& arrays) {
+    return triple(arrays.x, layout_.index(grain, node, 0), layout_.stride(grain));
+  });
+  return precision() == Precision::full ? x : Vector3(origin_[grain] + quantum_ * x);
+}
+Vector3 LaneState::velocity(int grain, int node) const {
+  return visit([&](const auto& arrays) {
+    return triple(arrays.v, layout_.index(grain, node, 0), layout_.stride(grain));
+  });
+}
+Vector3 LaneState::force(int grain, int node) const {
+  return visit([&](const auto& arrays) {
+    return triple(arrays.f, layout_.index(grain, node, 0), layout_.stride(grain));
+  });
+}
+
+void LaneState::set_position(int grain, int node, const Vector3& x) {
+  const Vector3 coordinate = precision() == Precision::full ? x : Vector3((x - origin_[grain]) / quantum_);
+  visit([&](auto& arrays) { set_triple(arrays.x, layout_.index(grain, node, 0), layout_.stride(grain), coordinate); });
+}
+void LaneState::set_velocity(int grain, int node, const Vector3& v) {
+  visit([&](auto& arrays) { set_triple(arrays.v, layout_.index(grain, node, 0), layout_.stride(grain), v); });
+}
+void LaneState::set_force(int grain, int node, const Vector3& f) {
+  visit([&](auto& arrays) { set_triple(arrays.f, layout_.index(grain, node, 0), layout_.stride(grain), f); });
+}
+
+void LaneState::map_origins(const Matrix3& map, const Vector3& shift) {
+  if (precision() == Precision::mixed) {
+    for (Vector3& origin : origin_) {
+      origin = map * origin + shift;
+    }
+  }
+}
+
+double LaneState::recentre() {
+  if (precision() == Precision::full) {
+    return 0.0;
+  }
+  std::int64_t farthest = 0;
+#pragma omp parallel for schedule(dynamic, 1) reduction(max : farthest)
+  for (int g = 0; g < layout_.n_grains(); ++g) {
+    const std::int64_t stride = layout_.stride(g), n = layout_.n_nodes(g);
+    for (int c = 0; c < 3; ++c) {
+      std::int32_t* x = mixed_.x.data() + layout_.index(g, 0, c);
+      std::int64_t sum = 0;
+      for (std::int64_t node = 0; node < n; ++node) {
+        sum += x[3 * node * stride];
+        farthest = std::max(farthest, std::abs(static_cast<std::int64_t>(x[3 * node * stride])));
+      }
+      const auto mean = static_cast<std::int32_t>(sum / n);
+      if (std::abs(mean) > (1 << 27)) { // a sixteenth of the range: grains move slowly, this is rare
+        for (std::int64_t node = 0; node < n; ++node) {
+          x[3 * node * stride] -= mean;
+        }
+        origin_[g][c] += quantum_ * mean;
+      }
+    }
+  }
+  return static_cast<double>(farthest) / 2147483648.0;
+}
+
+void LaneState::take(const LaneState& other) {
+  full_ = other.full_;
+  mixed_ = other.mixed_;
+  origin_ = other.origin_;
+}
+
+std::size_t LaneState::bytes() const {
+  return visit([](const auto& arrays) {
+    return arrays.x.capacity() * sizeof(arrays.x[0]) + (arrays.v.capacity() + arrays.f.capacity()) * sizeof(arrays.v[0]);
+  });
+}
+
+} // namespace boba
