@@ -78,8 +78,9 @@ private:
     const std::string begin = setup_.restart
                                   ? fmt::format("going on at step {} from {}", simulation_.step(), setup_.restart->file)
                                   : "starting";
-    log_.say(fmt::format("{}: {} grains, {} nodes, {} threads, {}; {}", setup_.scene.title,
+    log_.say(fmt::format("{}: {} grains, {} nodes, {} threads, {} precision, {}; {}", setup_.scene.title,
                          simulation_.packing().n_grains(), numbers_.n_nodes, setup_.scene.options.threads,
+                         setup_.scene.options.precision == Precision::mixed ? "mixed" : "double",
                          simulation_.instruction_set(), begin));
   }
 

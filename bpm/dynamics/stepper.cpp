@@ -73,8 +73,7 @@ void Stepper::drift() {
   }
   drift.residual_shift = -residual.dot(box_.origin());
 
-  // Multiples of the golden ratio fill (0, 1) as evenly as any sequence does.
-  drift.dither = std::fmod(static_cast<double>(step_ + 1) * 0.6180339887498949, 1.0);
+  drift.dither_seed = static_cast<std::uint64_t>(step_ + 1) << 32; // the kernel adds the node's number
   state_.map_origins(position_map_, shift);
   const std::vector<kernels::DriftResult> results = forces_.drift(state_, drift);
   check_drift(results);

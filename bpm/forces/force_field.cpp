@@ -202,6 +202,7 @@ kernels::DriftResult ForceField::drift_block(int b, LaneState& state, kernels::D
   for (int node = 0; node < block.n_nodes; node += drift_chunk) {
     const int end = std::min(node + drift_chunk, block.n_nodes);
     const std::int64_t first = block.offset + 3 * static_cast<std::int64_t>(node) * block.n_lanes;
+    drift.first_node = node;
     const kernels::DriftResult part = state.visit([&](auto& lanes) {
       return kernels_of(table_, lanes)
           .drift(lanes.x.data() + first, lanes.v.data() + first, end - node, block.n_lanes, drift);

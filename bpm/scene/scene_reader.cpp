@@ -29,6 +29,7 @@ AlphaChoice read_alpha(const SceneTable& table, bool needed) {
 void read_run(const SceneTable& table, Scene& scene) {
   scene.options.dt = table.real("dt", scene.options.dt);
   scene.options.skin = table.real("skin", scene.options.skin);
+  scene.options.precision = table.text("precision", "double") == "mixed" ? Precision::mixed : Precision::full;
   const auto threads = static_cast<int>(table.integer("threads", 0));
   scene.options.threads = threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   scene.wall_time = table.maybe_real("wall_time");

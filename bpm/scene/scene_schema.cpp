@@ -68,6 +68,9 @@ std::vector<SceneSection> general_sections() {
       section("run", "How the run is computed.",
               {above_key("dt", "tau", 0.0, 1.0, "0.1", "time step"),
                integer_key("threads", 0.0, 1024.0, "0", "threads; 0 takes all cores. The result does not depend on it"),
+               choice_key("precision", {"double", "mixed"}, "\"double\"",
+                          "mixed: positions in 32-bit fixed point from their grain's centre, the rest in floats; "
+                          "faster, with forces to six or seven digits"),
                real_key("skin", "d", 0.02, 2.0, "0.3",
                         "margin of the contact list; the result does not depend on it "
                         "beyond rounding"),

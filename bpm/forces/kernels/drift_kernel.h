@@ -5,6 +5,8 @@
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/forces/kernels/lanes.h"
 
+#include <cstdint>
+
 namespace {
 
 using boba::kernels::Drift;
@@ -20,16 +22,26 @@ template <class I, class V> inline I rounded_down(V x) {
   }
 }
 
+/// 64 bits that look random for every number. Source: G. L. Steele, D. Lea & C. H. Flood, "Fast splittable pseudorandom number
+/// generators", OOPSLA 2014 (SplitMix64).
+inline std::uint64_t random_bits(std::uint64_t number) {
+  std::uint64_t z = number * 0x9e3779b97f4a7c15ULL;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  return z ^ (z >> 31);
+}
+
 /// Doubles: x <- map x + shift + dt v. Fixed point: the origin follows the map outside, the coordinates move by
-/// (map - 1) x + dt v, rounded to quanta up or down by a dither that is the same for all nodes of a step and fills (0, 1) evenly
-/// in the course of steps: however slow a drift, none of it is lost.
+/// (map - 1) x + dt v, rounded up or down to quanta with the odds that make the mean exact, drawn anew for every step, node and
+/// component: however slow a drift, none of it is lost. (A sequence that only fills (0, 1) evenly will not do: velocities
+/// answer to the last rounding, and grains creep.)
 template <class S, bool mapped, class Coordinate = typename S::Coordinate, class Real = typename S::Real>
 void drift_lanes(Coordinate* x, const Real* v, int n_nodes, int stride, const Drift& drift, int lane,
                  typename S::V& speed2, typename S::V& checksum) {
   using V = typename S::V;
   using P = typename S::P;
   const V q = splat<V>(drift.quantum), dt = splat<V>(drift.dt);
-  const V per_quantum = splat<V>(S::fixed_point ? 1.0 / drift.quantum : 1.0), dither = splat<V>(drift.dither);
+  const V per_quantum = splat<V>(S::fixed_point ? 1.0 / drift.quantum : 1.0);
   V residual_shift = splat<V>(drift.residual_shift);
   if constexpr (S::fixed_point) {
     residual_shift = load_doubles<V>(drift.lane_shift + lane);
@@ -43,6 +55,8 @@ void drift_lanes(Coordinate* x, const Real* v, int n_nodes, int stride, const Dr
   for (std::int64_t node = 0; node < n_nodes; ++node) {
     Coordinate* at = x + 3 * node * stride + lane;
     const Real* va = v + 3 * node * stride + lane;
+    const std::uint64_t draw =
+        S::fixed_point ? random_bits(drift.dither_seed + static_cast<std::uint64_t>(drift.first_node + node)) : 0;
     P place[3];
     V p[3], u[3];
     for (int c = 0; c < 3; ++c) {
@@ -56,7 +70,8 @@ void drift_lanes(Coordinate* x, const Real* v, int n_nodes, int stride, const Dr
         if constexpr (mapped) {
           move += m[c][0] * p[0] + m[c][1] * p[1] + m[c][2] * p[2];
         }
-        store<P>(at + c * stride, place[c] + rounded_down<P>(multiply_add(move, per_quantum, dither)));
+        const V odds = splat<V>((static_cast<double>(draw >> (21 * c) & 0x1fffff) + 0.5) / 0x200000);
+        store<P>(at + c * stride, place[c] + rounded_down<P>(multiply_add(move, per_quantum, odds)));
       } else {
         const V moved =
             mapped ? m[c][0] * p[0] + m[c][1] * p[1] + m[c][2] * p[2] + splat<V>(drift.shift[c]) : p[c];

@@ -75,7 +75,8 @@ struct Drift {
   /// measured: u_x = v_x - (residual . x + residual_shift).
   double residual[3], residual_shift;
   double quantum;   ///< d; mixed only
-  double dither;    ///< 0 .. 1 quanta, another one each step; mixed only
+  std::uint64_t dither_seed; ///< another one each step; mixed only
+  int first_node;            ///< number of the first node in its grain; mixed only
   double lane_shift[max_lanes]; ///< residual_shift, with the lane's origin; mixed only
 };
 

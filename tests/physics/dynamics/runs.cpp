@@ -46,8 +46,9 @@ ShearStage shear_stage(Remap remap = Remap::positions) {
   return {.rate = 2e-2, .strain = 0.6, .remap = remap, .barostat = Barostat{.pressure = 0.05, .gain = 0.05}};
 }
 
-Snapshot sheared(int threads, std::int64_t watch = 1000000, Remap remap = Remap::positions) {
-  Simulation simulation(nine_grains(), {}, {.threads = threads});
+Snapshot sheared(int threads, std::int64_t watch = 1000000, Remap remap = Remap::positions,
+                 Precision precision = Precision::full) {
+  Simulation simulation(nine_grains(), {}, {.threads = threads, .precision = precision});
   Watcher watcher(watch);
   std::vector<Observer*> observers = {&watcher};
   simulation.run(0, shear_stage(remap), observers);
@@ -56,21 +57,80 @@ Snapshot sheared(int threads, std::int64_t watch = 1000000, Remap remap = Remap:
 
 TEST(Runs, DoNotDependOnThreads) {
   const Snapshot one = sheared(1);
+  const Snapshot one_mixed = sheared(1, 1000000, Remap::positions, Precision::mixed);
   for (const int threads : {2, 3, 4}) {
     expect_same_bits(one, sheared(threads));
+    expect_same_bits(one_mixed, sheared(threads, 1000000, Remap::positions, Precision::mixed));
+  }
+}
+
+// Positions agree as long as the trajectories have not parted: chaos multiplies a float's rounding.
+TEST(Runs, MixedPrecisionFollowsDouble) {
+  for (const Remap remap : {Remap::positions, Remap::velocities}) {
+    Stepper exact(nine_grains(), {}, {}), mixed(nine_grains(), {}, {.precision = Precision::mixed});
+    for (Stepper* stepper : {&exact, &mixed}) {
+      stepper->start();
+      if (remap == Remap::velocities) {
+        stepper->add_streaming(0.02, 1.0);
+      }
+      for (int step = 0; step < 100; ++step) {
+        stepper->advance(step + 1 < 100 ? Virial::trace : Virial::full);
+        stepper->move_cell({.shear = 0.02, .remap = remap, .dilation = 0.05 * (stepper->pressure() - 0.05)});
+      }
+    }
+    const Snapshot a = exact.snapshot(all_parts), b = mixed.snapshot(all_parts);
+    double largest = 0.0;
+    for (std::size_t i = 0; i < a.position.size(); ++i) {
+      largest = std::max(largest, (a.position[i] - b.position[i]).norm());
+    }
+    EXPECT_LT(largest, 1e-4);
+    EXPECT_GT(largest, 0.0); // it is mixed precision that was run
+    EXPECT_NEAR(exact.totals().pressure, mixed.totals().pressure, 1e-5 * exact.totals().pressure);
+    EXPECT_NEAR(exact.totals().mu(), mixed.totals().mu(), 1e-4);
+  }
+}
+
+// A drift of a thousandth of a quantum a step is not lost to rounding.
+TEST(Runs, SlowDriftInMixedPrecision) {
+  const Packing still = small_packing(
+      {.box = Box({0, 0, 0}, {40, 40, 40}), .n_grains = 3, .jitter = 0.0, .speed = 0.0, .least_distance = 8.0});
+  Packing packing = still;
+  const Vector3 velocity(1e-9, -3e-10, 2e-9);
+  for (Vector3& v : packing.velocity) {
+    v = velocity;
+  }
+  Stepper stepper(packing, {}, {.precision = Precision::mixed});
+  stepper.start();
+  const int n_steps = 20000;
+  for (int step = 0; step < n_steps; ++step) {
+    stepper.advance(Virial::none);
+  }
+  // What is left is a random walk: a node's rounding has at most half a quantum as standard deviation each step.
+  const std::vector<Vector3> centres = stepper.snapshot({}).grain_centre;
+  const std::vector<std::int64_t> first = packing.first_nodes();
+  const double quantum = std::ldexp(1.0, -27); // of a grain of radius up to 4 d
+  for (int g = 0; g < packing.n_grains(); ++g) {
+    Vector3 before = Vector3::Zero();
+    for (std::int64_t node = first[g]; node < first[g + 1]; ++node) {
+      before += packing.position[node] / static_cast<double>(first[g + 1] - first[g]);
+    }
+    const double walk = 0.5 * quantum * std::sqrt(3.0 * n_steps / static_cast<double>(first[g + 1] - first[g]));
+    EXPECT_LT((centres[g] - before - velocity * stepper.time()).norm(), 3.0 * walk);
+    EXPECT_GT((velocity * stepper.time()).norm(), 10.0 * walk);
   }
 }
 
 TEST(Runs, DoNotDependOnWhoIsWatching) { expect_same_bits(sheared(2), sheared(2, 7)); }
 
 TEST(Runs, ContinueBitForBitFromAnyStep) {
-  for (const Remap remap : {Remap::positions, Remap::velocities}) {
-    const Snapshot whole = sheared(2, 1000000, remap);
+  for (const auto& [remap, precision] : {std::pair(Remap::positions, Precision::full), std::pair(Remap::velocities, Precision::full),
+                                        std::pair(Remap::positions, Precision::mixed)}) {
+    const Snapshot whole = sheared(2, 1000000, remap, precision);
     for (const std::int64_t stop_at : {1, 2, 37, 150, 299}) {
-      Simulation first(nine_grains(), {}, {.threads = 2});
+      Simulation first(nine_grains(), {}, {.threads = 2, .precision = precision});
       ASSERT_EQ(first.run(0, shear_stage(remap), {}, [&] { return first.step() == stop_at; }), RunOutcome::stopped);
       const SavedState saved = first.save();
-      Simulation second(nine_grains(), {}, {.threads = 1});
+      Simulation second(nine_grains(), {}, {.threads = 1, .precision = precision});
       second.restore(saved);
       EXPECT_EQ(second.stage_index(), 0);
       second.run(0, shear_stage(remap), {});
@@ -114,7 +174,8 @@ TEST(Runs, FlipChangesNothing) {
 // while grains are sheared, squeezed and turned, the cell flips and single nodes are shot through the packing.
 TEST(Runs, LongLivedContactListsMissNothing) {
   for (const Remap remap : {Remap::positions, Remap::velocities}) {
-    Stepper lasting(nine_grains(), {}, {}), fresh(nine_grains(), {}, {});
+    const Precision precision = remap == Remap::positions ? Precision::full : Precision::mixed;
+    Stepper lasting(nine_grains(), {}, {.precision = precision}), fresh(nine_grains(), {}, {.precision = precision});
     Snapshot end[2];
     for (Stepper* stepper : {&lasting, &fresh}) {
       stepper->start();

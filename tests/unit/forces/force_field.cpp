@@ -19,8 +19,8 @@ struct Evaluated {
 };
 
 Evaluated evaluate(const Packing& packing, Virial virial, const Material& material = {},
-                   const Matrix3& residual_rate = Matrix3::Zero()) {
-  const LaneLayout layout(packing);
+                   const Matrix3& residual_rate = Matrix3::Zero(), Precision precision = Precision::full) {
+  const LaneLayout layout(packing, precision);
   LaneState state(packing, layout);
   ForceField forces(packing, layout, material, 0.3);
   forces.evaluate(state, packing.box, {.virial = virial, .keep_forces = true, .residual_rate = residual_rate});
@@ -69,6 +69,33 @@ TEST(ForceField, AllAlphasInFullAndRaggedBlocks) {
                                       .alpha = alpha,
                                       .least_distance = 4.2}),
                        {}, Matrix3::Zero(), n_grains > 2 ? 1 : 2);
+    }
+  }
+}
+
+// A bond's force in floats: r, r / r0 and the cube root are off by a few units in the 24th bit, each times k + |alpha|; a node has
+// up to 16 bonds, and its position is off by half a quantum.
+TEST(ForceField, MixedPrecisionIsAsGoodAsAFloat) {
+  for (const double alpha : {-0.8, 0.0, 2.0, 12.0}) {
+    for (const int n_grains : {1, 2, 7, 8, 9, 16, 17}) {
+      SCOPED_TRACE(testing::Message() << "alpha " << alpha << ", " << n_grains << " grains");
+      const double length = 5.3 * std::cbrt(n_grains);
+      const Packing packing = small_packing({.box = Box({0, 0, 0}, {length, length, length}),
+                                             .n_grains = n_grains,
+                                             .alpha = alpha,
+                                             .least_distance = 4.2});
+      const PlainForces plain = plain_forces(packing, {}, n_grains > 2 ? 1 : 2);
+      const Evaluated ours = evaluate(packing, Virial::full, {}, Matrix3::Zero(), Precision::mixed);
+      const double bound = 16 * 4 * std::ldexp(1.0 + std::abs(alpha), -24);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < plain.force.size(); ++i) {
+        ASSERT_LT((ours.force[i] - plain.force[i]).norm(), bound) << "node " << i;
+        sum += (ours.force[i] - plain.force[i]).squaredNorm();
+      }
+      // Errors of single bonds have no common sign.
+      EXPECT_LT(std::sqrt(sum / static_cast<double>(plain.force.size())), 0.1 * bound);
+      EXPECT_LT((ours.virial - plain.virial).norm(), 1e-5 * plain.virial.norm());
+      EXPECT_EQ(ours.n_touching, plain.n_contacts);
     }
   }
 }
