@@ -11,8 +11,8 @@ double dense_pressure(double alpha);
 /// The paper's fastest shear rate, and a barostat of gain 0.02 d/(k tau).
 CellRates dense_shear_rates(double excess_pressure);
 
-/// A packing under shear at P~ = 0.1: grains inserted at random at a packing fraction of 0.38, compressed and sheared to
-/// a strain of 0.1. That takes minutes for large packings, so the state is kept in the template cache's folder.
+/// A packing under shear at P~ = 0.1: grains inserted at random at a packing fraction of 0.38, compressed and sheared
+/// to a strain of 0.1. That takes minutes for large packings, so the state is kept in the template cache's folder.
 ///
 /// \param n_nodes per grain; \param alpha 0 or 2, for which the published E and nu give P from P~
 Packing dense_packing(int n_grains, int n_nodes, double alpha);

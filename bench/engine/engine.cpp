@@ -23,12 +23,13 @@ Stepper& stepper_of(int n_grains, int n_nodes, double alpha, int threads, Precis
   return *stepper;
 }
 
-/// Arguments: grains, nodes a grain, alpha, threads, precision (1: mixed). One iteration is one step at the paper's fastest rate.
+/// Arguments: grains, nodes a grain, alpha, threads, precision (1: mixed). One iteration is one step at the paper's
+/// fastest rate.
 void dense_shear(benchmark::State& state) {
   const auto alpha = static_cast<double>(state.range(2));
-  Stepper& stepper = stepper_of(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), alpha,
-                                static_cast<int>(state.range(3)),
-                                state.range(4) != 0 ? Precision::mixed : Precision::full);
+  Stepper& stepper =
+      stepper_of(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), alpha,
+                 static_cast<int>(state.range(3)), state.range(4) != 0 ? Precision::mixed : Precision::full);
   const double pressure = dense_pressure(alpha);
   const Timings before = stepper.timings();
   for (auto _ : state) {
@@ -38,8 +39,8 @@ void dense_shear(benchmark::State& state) {
   const Timings after = stepper.timings();
   const double nodes = static_cast<double>(stepper.packing().position.size());
   const double steps = static_cast<double>(state.iterations());
-  const double all = (after.bonds - before.bonds) + (after.contacts - before.contacts) + (after.search - before.search) +
-                     (after.integration - before.integration);
+  const double all = (after.bonds - before.bonds) + (after.contacts - before.contacts) +
+                     (after.search - before.search) + (after.integration - before.integration);
   state.counters["node_steps"] = benchmark::Counter(nodes * steps, benchmark::Counter::kIsRate);
   state.counters["bonds_%"] = 100.0 * (after.bonds - before.bonds) / all;
   state.counters["contacts_%"] = 100.0 * (after.contacts - before.contacts) / all;
@@ -49,8 +50,9 @@ void dense_shear(benchmark::State& state) {
   const double all_steps = static_cast<double>(after.steps);
   const double n_grains = stepper.layout().n_grains();
   state.counters["steps_per_note"] = all_steps * n_grains / static_cast<double>(listed.grains);
-  state.counters["steps_per_pair_search"] =
-      all_steps * static_cast<double>(stepper.forces().contact_list().pairs().size()) / static_cast<double>(listed.pairs);
+  state.counters["steps_per_pair_search"] = all_steps *
+                                            static_cast<double>(stepper.forces().contact_list().pairs().size()) /
+                                            static_cast<double>(listed.pairs);
   state.counters["nodes_looked_up/step"] = static_cast<double>(listed.nodes) / all_steps;
   state.counters["bytes_per_node"] = static_cast<double>(stepper.bytes()) / nodes;
   state.counters["candidates/node"] = static_cast<double>(stepper.forces().contact_list().n_candidates()) / nodes;

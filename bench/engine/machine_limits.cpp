@@ -12,8 +12,8 @@
 namespace boba::bench {
 namespace {
 
-/// a <- b + s c over three arrays of the given size in KiB together: 24 bytes a number (and as much again that the cache reads
-/// before it writes a, not counted here).
+/// a <- b + s c over three arrays of the given size in KiB together: 24 bytes a number (and as much again that the
+/// cache reads before it writes a, not counted here).
 void triad(benchmark::State& state) {
   const std::int64_t n = state.range(0) * 1024 / 24;
   std::vector<double> a(n, 0.0), b(n, 1.0), c(n, 2.0);

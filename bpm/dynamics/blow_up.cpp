@@ -33,24 +33,25 @@ std::string describe_fast_node(const Block& block, const LaneState& state, std::
       }
     }
   }
-  const std::string what = std::isfinite(worst)
-                               ? fmt::format("moves {:.3g} d in one step, more than the {} d allowed", dt * std::sqrt(worst),
-                                             0.5 * material.diameter)
-                               : std::string("has a velocity that is not a finite number");
-  return fmt::format("blow-up at step {}: node {} of grain {} {}. Likely cause: {}.", step, worst_node, worst_grain, what,
-                     likely_cause(dt));
+  const std::string what = std::isfinite(worst) ? fmt::format("moves {:.3g} d in one step, more than the {} d allowed",
+                                                              dt * std::sqrt(worst), 0.5 * material.diameter)
+                                                : std::string("has a velocity that is not a finite number");
+  return fmt::format("blow-up at step {}: node {} of grain {} {}. Likely cause: {}.", step, worst_node, worst_grain,
+                     what, likely_cause(dt));
 }
 
 std::string describe_torn_grain(double share, std::int64_t step, double dt) {
-  return fmt::format("blow-up at step {}: a grain reaches {:.0f} % of the range of fixed-point positions, four times the "
-                     "largest grain's radius. Likely cause: {}.",
-                     step, 100.0 * share, likely_cause(dt));
+  return fmt::format(
+      "blow-up at step {}: a grain reaches {:.0f} % of the range of fixed-point positions, four times the "
+      "largest grain's radius. Likely cause: {}.",
+      step, 100.0 * share, likely_cause(dt));
 }
 
 std::string describe_stretched_bond(const ForceField::Stretch& stretch, std::int64_t step, double dt) {
-  return fmt::format("blow-up at step {}: a bond of node {} of grain {} is stretched to {:.3g} times its length, more than "
-                     "the {} allowed. Likely cause: {}.",
-                     step, stretch.node, stretch.grain, stretch.ratio, largest_bond_stretch, likely_cause(dt));
+  return fmt::format(
+      "blow-up at step {}: a bond of node {} of grain {} is stretched to {:.3g} times its length, more than "
+      "the {} allowed. Likely cause: {}.",
+      step, stretch.node, stretch.grain, stretch.ratio, largest_bond_stretch, likely_cause(dt));
 }
 
 } // namespace boba

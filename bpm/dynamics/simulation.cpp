@@ -55,8 +55,7 @@ struct Simulation::Impl {
   /// The observers that want the step to come.
   std::vector<Observer*> interested(std::span<Observer* const> observers, double rate) const {
     const StepForecast forecast = {stepper.step() + 1, static_cast<double>(stepper.step() + 1) * stepper.options().dt,
-                                   stepper.strain() + rate * stepper.options().dt,
-                                   driver->steps_left(stepper) == 1};
+                                   stepper.strain() + rate * stepper.options().dt, driver->steps_left(stepper) == 1};
     std::vector<Observer*> wanting;
     for (Observer* observer : observers) {
       if (observer->wants(forecast)) {
@@ -144,18 +143,42 @@ void Simulation::evaluate() {
   impl_->totals = impl_->stepper.totals();
 }
 
-std::int64_t Simulation::step() const { return impl_->stepper.step(); }
-double Simulation::time() const { return impl_->stepper.time(); }
-double Simulation::strain() const { return impl_->stepper.strain(); }
-const Box& Simulation::box() const { return impl_->stepper.box(); }
-const Packing& Simulation::packing() const { return impl_->stepper.packing(); }
-const Totals& Simulation::totals() const { return impl_->totals; }
-Timings Simulation::timings() const { return impl_->stepper.timings(); }
-std::string Simulation::instruction_set() const { return impl_->stepper.forces().kernel_table().name; }
-Snapshot Simulation::snapshot(Parts parts) const { return impl_->stepper.snapshot(parts); }
-std::array<double, 2> Simulation::end_forces() const { return impl_->stepper.end_forces(); }
-double Simulation::end_gap() const { return impl_->stepper.end_gap(); }
-int Simulation::stage_index() const { return impl_->stage_index; }
+std::int64_t Simulation::step() const {
+  return impl_->stepper.step();
+}
+double Simulation::time() const {
+  return impl_->stepper.time();
+}
+double Simulation::strain() const {
+  return impl_->stepper.strain();
+}
+const Box& Simulation::box() const {
+  return impl_->stepper.box();
+}
+const Packing& Simulation::packing() const {
+  return impl_->stepper.packing();
+}
+const Totals& Simulation::totals() const {
+  return impl_->totals;
+}
+Timings Simulation::timings() const {
+  return impl_->stepper.timings();
+}
+std::string Simulation::instruction_set() const {
+  return impl_->stepper.forces().kernel_table().name;
+}
+Snapshot Simulation::snapshot(Parts parts) const {
+  return impl_->stepper.snapshot(parts);
+}
+std::array<double, 2> Simulation::end_forces() const {
+  return impl_->stepper.end_forces();
+}
+double Simulation::end_gap() const {
+  return impl_->stepper.end_gap();
+}
+int Simulation::stage_index() const {
+  return impl_->stage_index;
+}
 
 SavedState Simulation::save() const {
   SavedState saved;

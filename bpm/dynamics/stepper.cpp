@@ -37,7 +37,9 @@ void Stepper::evaluate(Evaluation what) {
   }
 }
 
-void Stepper::evaluate_only() { evaluate({.virial = Virial::full, .residual_rate = residual_rate_}); }
+void Stepper::evaluate_only() {
+  evaluate({.virial = Virial::full, .residual_rate = residual_rate_});
+}
 
 void Stepper::start() {
   started_ = true;
@@ -98,7 +100,8 @@ void Stepper::check_drift(const std::vector<kernels::DriftResult>& results) cons
 
 void Stepper::sum_up() {
   double virial = 0.0, kinetic = 0.0;
-  for (const GrainSums& grain : forces_.grain_sums()) { // grain by grain: the order is the packing's, whatever the threads
+  for (const GrainSums& grain :
+       forces_.grain_sums()) { // grain by grain: the order is the packing's, whatever the threads
     virial += grain.virial_trace;
     kinetic += grain.kinetic_trace;
   }

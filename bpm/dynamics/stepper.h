@@ -13,7 +13,7 @@ namespace boba {
 
 /// How the cell moves at the end of a step.
 struct CellRates {
-  double shear = 0.0;    ///< d(xy)/dt over the current Ly, 1/tau
+  double shear = 0.0; ///< d(xy)/dt over the current Ly, 1/tau
   Remap remap = Remap::positions;
   double dilation = 0.0; ///< d ln L / dt of all three axes, 1/tau; always acts on positions
 };
@@ -56,8 +56,8 @@ public:
   /// Time sound needs across the cell's shortest side, with the modulus above (tau).
   double sound_crossing(double bulk_modulus) const;
   Totals totals() const; ///< needs an evaluation with Virial::full
-  /// \throws std::logic_error when velocities or forces are asked for at a step that nobody asked the full stress of: its
-  /// forces were not kept.
+  /// \throws std::logic_error when velocities or forces are asked for at a step that nobody asked the full stress of:
+  /// its forces were not kept.
   Snapshot snapshot(Simulation::Parts parts) const;
   /// Smallest and largest z of any node, d.
   std::array<double, 2> extent_z() const;

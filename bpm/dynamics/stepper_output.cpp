@@ -24,7 +24,8 @@ Totals Stepper::totals() const {
 
 Snapshot Stepper::snapshot(Simulation::Parts parts) const {
   if ((parts.force || (parts.velocity && started_)) && !forces_kept_) {
-    throw std::logic_error("snapshot: the forces of step " + std::to_string(step_) + " were not kept; an "
+    throw std::logic_error("snapshot: the forces of step " + std::to_string(step_) +
+                           " were not kept; an "
                            "observer must ask for it");
   }
   Snapshot snapshot;
@@ -62,13 +63,16 @@ Snapshot Stepper::snapshot(Simulation::Parts parts) const {
 }
 
 std::size_t Stepper::bytes() const {
-  return state_.bytes() + forces_.contact_list().bytes() + (packing_.position.capacity() + packing_.velocity.capacity()) * sizeof(Vector3) +
+  return state_.bytes() + forces_.contact_list().bytes() +
+         (packing_.position.capacity() + packing_.velocity.capacity()) * sizeof(Vector3) +
          packing_.id.capacity() * sizeof(std::int64_t);
 }
 
 namespace {
 
-std::vector<double> flat(const Matrix3& m) { return {m.data(), m.data() + 9}; }
+std::vector<double> flat(const Matrix3& m) {
+  return {m.data(), m.data() + 9};
+}
 
 Matrix3 matrix(const std::vector<double>& numbers) {
   if (numbers.size() != 9) {
@@ -77,8 +81,7 @@ Matrix3 matrix(const std::vector<double>& numbers) {
   return Eigen::Map<const Matrix3>(numbers.data());
 }
 
-template <class Array, class Number>
-void copy_into(Array& to, const std::vector<Number>& from, const char* name) {
+template <class Array, class Number> void copy_into(Array& to, const std::vector<Number>& from, const char* name) {
   if (from.size() != to.size()) {
     throw std::runtime_error(std::string("saved state: ") + name + " belongs to another packing or precision (" +
                              std::to_string(from.size()) + " numbers, " + std::to_string(to.size()) + " expected)");

@@ -12,8 +12,7 @@ namespace {
 
 /// Calls visit(first node, length, undeformed length) for every bond of a grain, those across the boundary included.
 template <class Visit>
-void for_each_bond(const NetworkData& data, const LaneState& state, const Box& box, int grain,
-                   Visit&& visit) {
+void for_each_bond(const NetworkData& data, const LaneState& state, const Box& box, int grain, Visit&& visit) {
   const kernels::Network network = data.view();
   for (int i = 0; i < network.n_nodes; ++i) {
     const Vector3 xi = state.position(grain, i);

@@ -44,7 +44,9 @@ bool contains(const Bounds& bounds, const Vector3& x) {
   return (x - bounds.low).minCoeff() >= 0.0 && (bounds.high - x).minCoeff() >= 0.0;
 }
 
-Vector3 lattice_vector(const Box& box, const ImageVector& n) { return box.h() * Vector3(n.a, n.b, n.c); }
+Vector3 lattice_vector(const Box& box, const ImageVector& n) {
+  return box.h() * Vector3(n.a, n.b, n.c);
+}
 
 } // namespace
 
@@ -73,7 +75,8 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
 #pragma omp parallel for schedule(dynamic, 4) reduction(min : guaranteed) reduction(+ : searched)
   for (int p = 0; p < n_pairs; ++p) {
     ContactPair& pair = pairs_[p];
-    if (!pair.searched || grains_[pair.a].anew || grains_[pair.b].anew || guarantee(pair, box) < diameter_ + reserve()) {
+    if (!pair.searched || grains_[pair.a].anew || grains_[pair.b].anew ||
+        guarantee(pair, box) < diameter_ + reserve()) {
       search(pair, box, *network_of_grain[pair.a]);
       ++searched;
     } else {
@@ -173,8 +176,9 @@ GrainFrame ContactList::second_frame(const ContactPair& pair, const Box& box) co
 
 /// Distance that the pair's unlisted nodes keep at present.
 ///
-/// A pair of nodes at the distance s >= diameter + skin when searched is now at least s (1 - e) - R - the two strays, with
-/// e the shortening of b's frame since then and R the largest relative displacement of the two frames where the grains meet.
+/// A pair of nodes at the distance s >= diameter + skin when searched is now at least s (1 - e) - R - the two strays,
+/// with e the shortening of b's frame since then and R the largest relative displacement of the two frames where the
+/// grains meet.
 double ContactList::guarantee(const ContactPair& pair, const Box& box) const {
   const TrackedGrain &a = grains_[pair.a], &b = grains_[pair.b];
   const GrainFrame moved_b = second_frame(pair, box).after(pair.frame_b.inverse());

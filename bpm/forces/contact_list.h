@@ -14,25 +14,26 @@ namespace boba {
 
 /// Candidate contacts of every pair of grains.
 ///
-/// A grain's nodes are noted once by their places in its frame, an affine map that is fitted to the grain again and again:
-/// what is left is how far a node strays from where the frame puts it. A pair of grains keeps its candidates as long as the
-/// two frames' relative motion where they meet, the strays of both, and what the nodes may have moved since they were last
-/// looked at are less than the skin together. A node that strays far gets a new place and is looked up once; a pair whose
-/// grains have slid past each other is searched anew from the same places; only a grain that has changed its shape
-/// notes all its places anew.
+/// A grain's nodes are noted once by their places in its frame, an affine map that is fitted to the grain again and
+/// again: what is left is how far a node strays from where the frame puts it. A pair of grains keeps its candidates as
+/// long as the two frames' relative motion where they meet, the strays of both, and what the nodes may have moved since
+/// they were last looked at are less than the skin together. A node that strays far gets a new place and is looked up
+/// once; a pair whose grains have slid past each other is searched anew from the same places; only a grain that has
+/// changed its shape notes all its places anew.
 ///
 /// Candidates are sorted by nodes, pairs by grains and image: an order that follows from the state alone.
-/// Since candidates that do not touch add nothing, forces are bit for bit the same whether a pair was searched at this step
-/// or earlier, by one thread or by many. (Nothing of the list needs to be stored in a checkpoint.)
-/// Source: docs/decisions/contacts.md.
+/// Since candidates that do not touch add nothing, forces are bit for bit the same whether a pair was searched at this
+/// step or earlier, by one thread or by many. (Nothing of the list needs to be stored in a checkpoint.) Source:
+/// docs/decisions/contacts.md.
 class ContactList {
 public:
   ContactList(const LaneLayout& layout, const kernels::KernelTable& table, double diameter, double skin);
 
-  /// Makes sure that no contact of the present state is missing; true when the list changed. `network_of_grain` as given
-  /// at the first call.
+  /// Makes sure that no contact of the present state is missing; true when the list changed. `network_of_grain` as
+  /// given at the first call.
   bool update(const LaneState& state, const Box& box, const std::vector<const NetworkData*>& network_of_grain);
-  /// Tells the list that the cell was mapped by `cell_map` and that no node moved farther than `displacement` beyond that.
+  /// Tells the list that the cell was mapped by `cell_map` and that no node moved farther than `displacement` beyond
+  /// that.
   void note_motion(const Matrix3& cell_map, double displacement);
   /// The cell's vectors or the state changed in a way that note_motion was not told of.
   void invalidate() { built_ = false; }
@@ -54,14 +55,14 @@ public:
 
 private:
   struct TrackedGrain {
-    GrainFrame frame;           ///< from noted places to space
-    GrainFrame neighbour_frame; ///< the same when the grain's neighbours were found
-    GrainGrid grid;             ///< over the noted places, new ones inserted
+    GrainFrame frame;                              ///< from noted places to space
+    GrainFrame neighbour_frame;                    ///< the same when the grain's neighbours were found
+    GrainGrid grid;                                ///< over the noted places, new ones inserted
     Matrix3 inverse_moments = Matrix3::Identity(); ///< of sum X (x) X over the nodes as first noted
-    double stray = 0.0;         ///< largest distance of a node from where the frame puts it, d
+    double stray = 0.0;                            ///< largest distance of a node from where the frame puts it, d
     std::vector<std::int32_t> moved; ///< nodes with a new place since the pairs were last brought up to date
-    int n_moved = 0;            ///< since all were noted
-    bool anew = false;          ///< all were noted since the pairs were last brought up to date
+    int n_moved = 0;                 ///< since all were noted
+    bool anew = false;               ///< all were noted since the pairs were last brought up to date
     std::vector<std::int32_t> listed;
   };
   using Networks = std::vector<const NetworkData*>;
@@ -109,8 +110,9 @@ private:
   double diameter_, skin_, skin_between_;
   bool built_ = false;
   Matrix3 cell_since_tracking_ = Matrix3::Identity(), cell_since_neighbours_ = Matrix3::Identity();
-  double guaranteed_ = 0.0; ///< all pairs of nodes that are not listed were farther apart when the grains were last tracked, d
-  double crept_ = 0.0;      ///< bound on any node's motion since then beyond the cell's, d
+  double guaranteed_ =
+      0.0; ///< all pairs of nodes that are not listed were farther apart when the grains were last tracked, d
+  double crept_ = 0.0;        ///< bound on any node's motion since then beyond the cell's, d
   AlignedArray<float> place_; ///< X, lane layout, d
   std::vector<TrackedGrain> grains_;
   std::vector<ContactPair> pairs_; ///< sorted by a, b, image

@@ -18,7 +18,7 @@ struct ContactPair {
   std::vector<kernels::NodePair> candidates;
 
   bool searched = false;
-  bool changed = true;     ///< since the grains last listed their nodes
+  bool changed = true;         ///< since the grains last listed their nodes
   GrainFrame frame_a, frame_b; ///< at the search; b's displaced by the lattice vector
   Bounds bounds_a, bounds_b;   ///< of the grains and their reach, at the search
   Bounds zone;                 ///< where nodes of a could be near nodes of b, at the search

@@ -17,7 +17,8 @@ Interval images_within(double offset, double period, double reach, bool periodic
   if (!periodic) {
     return std::abs(offset) <= reach ? Interval{0, 0} : Interval{0, -1};
   }
-  return {static_cast<int>(std::ceil((-reach - offset) / period)), static_cast<int>(std::floor((reach - offset) / period))};
+  return {static_cast<int>(std::ceil((-reach - offset) / period)),
+          static_cast<int>(std::floor((reach - offset) / period))};
 }
 
 } // namespace
@@ -142,8 +143,8 @@ void add_pairs_between(const GrainGrid& a, const GrainGrid& b, const GrainFrame&
 
 namespace {
 
-/// Partners of the node at place `at` of cell (x, y, z) among the half of the surrounding cells that come later: the rest of
-/// its row, and the rows after.
+/// Partners of the node at place `at` of cell (x, y, z) among the half of the surrounding cells that come later: the
+/// rest of its row, and the rows after.
 void find_later(const GrainGrid& grid, std::int32_t at, int x, int y, int z, NearPlaces& near) {
   const Vector3 position = grid.position(at);
   const int left = std::max(x - 1, 0), right = std::min(x + 2, grid.cells(0));

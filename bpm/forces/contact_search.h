@@ -25,14 +25,14 @@ struct NeighbourGrain {
   ImageVector image;
 };
 
-/// All (other grain, image) whose bounds come within `reach` of grain g's, the grain's own images included and the grain
-/// itself not. Exact for any cell, also one smaller than a grain: the integer intervals are solved for axis by axis.
-/// Sorted by other.
+/// All (other grain, image) whose bounds come within `reach` of grain g's, the grain's own images included and the
+/// grain itself not. Exact for any cell, also one smaller than a grain: the integer intervals are solved for axis by
+/// axis. Sorted by other.
 std::vector<NeighbourGrain> neighbour_grains(int g, std::span<const Bounds> bounds, const Box& box, double reach);
 
-/// Adds the pairs (node i of `a`, node j of `b`) closer than `radius`, measured where a's nodes are sorted; `b_to_a` brings b's
-/// there. Places inserted later count too, so that a pair may be added more than once. The radius must not exceed the
-/// reach of the grids.
+/// Adds the pairs (node i of `a`, node j of `b`) closer than `radius`, measured where a's nodes are sorted; `b_to_a`
+/// brings b's there. Places inserted later count too, so that a pair may be added more than once. The radius must not
+/// exceed the reach of the grids.
 void add_pairs_between(const GrainGrid& a, const GrainGrid& b, const GrainFrame& b_to_a, double radius,
                        std::vector<kernels::NodePair>& pairs);
 

@@ -87,7 +87,8 @@ void ContactList::track_block(int b, const LaneState& state) {
   double largest2[max_lanes] = {};
   far.resize(static_cast<std::size_t>(block.n_nodes) * block.n_lanes);
   const std::int64_t n_far = state.visit([&](const auto& arrays) {
-    return kernels_of(table_, arrays).frame_residuals(frame_arrays_of(block, arrays, place_.data(), state.quantum()), frames, largest2, far.data());
+    return kernels_of(table_, arrays)
+        .frame_residuals(frame_arrays_of(block, arrays, place_.data(), state.quantum()), frames, largest2, far.data());
   });
   for (std::int64_t k = 0; k < n_far; ++k) {
     grains_[block.grain[far[k] % block.n_lanes]].moved.push_back(far[k] / block.n_lanes);
@@ -105,9 +106,9 @@ void ContactList::track_block(int b, const LaneState& state) {
 
 bool ContactList::out_of_shape(const TrackedGrain& grain, int n_nodes) const {
   const double e = shortening(grain.frame.linear);
-  return !(e <= largest_shortening) ||
-         !(reach_inside() * (1.0 - e) - 2.0 * grain.stray >= diameter_ + reserve()) ||
-         static_cast<double>(grain.n_moved + static_cast<std::int64_t>(grain.moved.size())) > largest_moved_share * n_nodes;
+  return !(e <= largest_shortening) || !(reach_inside() * (1.0 - e) - 2.0 * grain.stray >= diameter_ + reserve()) ||
+         static_cast<double>(grain.n_moved + static_cast<std::int64_t>(grain.moved.size())) >
+             largest_moved_share * n_nodes;
 }
 
 /// Notes the places of all nodes anew: the frame starts as a mere translation.

@@ -15,8 +15,8 @@
 namespace boba {
 
 ForceField::ForceField(const Packing& packing, const LaneLayout& layout, const Material& material, double skin)
-    : layout_(layout), material_(material), table_(kernels::best_table()), contact_list_(layout, table_, material.diameter, skin),
-      contact_sums_(layout.n_grains()) {
+    : layout_(layout), material_(material), table_(kernels::best_table()),
+      contact_list_(layout, table_, material.diameter, skin), contact_sums_(layout.n_grains()) {
   results_.grains.resize(layout.n_grains());
   for (const auto& grain_template : packing.templates) {
     networks_.emplace_back(*grain_template);
@@ -29,8 +29,9 @@ ForceField::ForceField(const Packing& packing, const LaneLayout& layout, const M
     n_nodes += network_of_grain_.back()->n_nodes();
   }
   if (has_periodic_template_ && layout.precision() == Precision::mixed) {
-    throw std::invalid_argument("precision = \"mixed\" does not do networks that are bonded across the cell's boundary; "
-                                "allowed for them: \"double\"");
+    throw std::invalid_argument(
+        "precision = \"mixed\" does not do networks that are bonded across the cell's boundary; "
+        "allowed for them: \"double\"");
   }
   contact_nodes_ = std::make_unique_for_overwrite<kernels::ContactNode[]>(n_nodes);
 }
@@ -79,7 +80,8 @@ template <class Real> void ForceField::add_contacts(int grain, Real* f, bool wit
   sums.smallest_r2 = no_contact_r2;
   for (const ContactSide& side : contact_list_.sides(grain)) {
     const ContactPair& pair = contact_list_.pairs()[side.pair];
-    (*touch_kernel<Real>(table_))(pair.touches.data(), static_cast<std::int64_t>(pair.touches.size()), side.sign, f, layout_.stride(grain));
+    (*touch_kernel<Real>(table_))(pair.touches.data(), static_cast<std::int64_t>(pair.touches.size()), side.sign, f,
+                                  layout_.stride(grain));
     if (with_sums && !pair.touches.empty()) {
       for (int c = 0; c < 6; ++c) {
         sums.virial[c] += 0.5 * pair.sums.virial[c];
@@ -91,7 +93,8 @@ template <class Real> void ForceField::add_contacts(int grain, Real* f, bool wit
   }
 }
 
-template <class Real> double ForceField::walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums) {
+template <class Real>
+double ForceField::walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums) {
   const Block& block = layout_.blocks()[b];
   double total = 0.0;
   for (int lane = 0; lane < block.n_lanes; ++lane) {
@@ -139,9 +142,14 @@ void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>&
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     wall_forces_[w][b] = walls_on(b, state, w, force.data(), what.virial != Virial::none);
   }
-  kernels::BlockArraysOf<Coordinate, Real> arrays = {lanes.x.data() + block.offset, lanes.v.data() + block.offset,
-                                                     force.data(),  volume.data(),   block.alpha.data(),
-                                                     residual_shift, state.quantum(), block.n_lanes};
+  kernels::BlockArraysOf<Coordinate, Real> arrays = {lanes.x.data() + block.offset,
+                                                     lanes.v.data() + block.offset,
+                                                     force.data(),
+                                                     volume.data(),
+                                                     block.alpha.data(),
+                                                     residual_shift,
+                                                     state.quantum(),
+                                                     block.n_lanes};
   kernels::LaneSums sums;
   ImageBondSums image_sums{};
   if constexpr (std::is_same_v<Real, double>) { // the constructor refuses them in mixed precision

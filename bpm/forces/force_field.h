@@ -22,8 +22,8 @@ using Tensor6 = std::array<double, 6>;
 
 /// What one grain contributes to the stress: sigma = -(sum of virial + kinetic) / volume.
 struct GrainSums {
-  Tensor6 virial{};  ///< sum of r_ij f_ij over bonds and half of each contact, k d^2
-  Tensor6 kinetic{}; ///< sum of m v v, k d^2
+  Tensor6 virial{};                               ///< sum of r_ij f_ij over bonds and half of each contact, k d^2
+  Tensor6 kinetic{};                              ///< sum of m v v, k d^2
   double virial_trace = 0.0, kinetic_trace = 0.0; ///< the only members set by Virial::trace
 };
 
@@ -40,8 +40,8 @@ struct Evaluation {
   double half_kick = 0.0; ///< full-step velocity = v + half_kick f / m, tau
   Virial virial = Virial::none;
   bool keep_forces = false; ///< write the forces to the state; otherwise they live in scratch only
-  /// d/dt of the cell matrix as far as it does not act on positions (remap = "velocities"): an image displaced by h n moves
-  /// with rate n, and the streaming velocity is taken from the kinetic tensor.
+  /// d/dt of the cell matrix as far as it does not act on positions (remap = "velocities"): an image displaced by h n
+  /// moves with rate n, and the streaming velocity is taken from the kinetic tensor.
   Matrix3 residual_rate = Matrix3::Zero();
 };
 
@@ -93,8 +93,7 @@ private:
   void collect(int b, const LaneState& state);
   void collect(int grain, std::span<const std::int32_t> nodes, const LaneState& state);
   kernels::DriftResult drift_block(int b, LaneState& state, kernels::Drift drift);
-  template <class Real>
-  double walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums);
+  template <class Real> double walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums);
   void contacts_between(ContactPair& pair, const Box& box, const Evaluation& what);
   template <class Real> void add_contacts(int grain, Real* f, bool with_sums);
   template <class Coordinate, class Real>
@@ -110,10 +109,10 @@ private:
   std::vector<Wall> walls_;
   Results results_;
   std::vector<kernels::ContactSums> contact_sums_;
-  std::vector<std::int64_t> first_node_; ///< per grain, in contact_nodes_
+  std::vector<std::int64_t> first_node_;                  ///< per grain, in contact_nodes_
   std::unique_ptr<kernels::ContactNode[]> contact_nodes_; ///< of all nodes, kept up to date for those that are listed
-  bool collected_ = false; ///< contact nodes are those of the present positions
-  std::vector<std::vector<double>> wall_forces_; ///< per wall and block
+  bool collected_ = false;                                ///< contact nodes are those of the present positions
+  std::vector<std::vector<double>> wall_forces_;          ///< per wall and block
   bool has_periodic_template_ = false;
 };
 

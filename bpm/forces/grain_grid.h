@@ -18,8 +18,8 @@ struct Bounds {
   Vector3 high = Vector3::Constant(-1e300);
 };
 
-/// All nodes of one grain in cubic cells of edge `reach` over its bounds, sorted by cell with x running fastest, so that
-/// the cells of a row are one run of nodes. No assumption is made on which nodes are at the surface.
+/// All nodes of one grain in cubic cells of edge `reach` over its bounds, sorted by cell with x running fastest, so
+/// that the cells of a row are one run of nodes. No assumption is made on which nodes are at the surface.
 class GrainGrid {
 public:
   GrainGrid() = default;
@@ -93,7 +93,8 @@ private:
   };
 
   std::int64_t ringed(int x, int y, int z) const {
-    return (static_cast<std::int64_t>(z + ring) * (n_cells_[1] + 2 * ring) + y + ring) * (n_cells_[0] + 2 * ring) + x + ring;
+    return (static_cast<std::int64_t>(z + ring) * (n_cells_[1] + 2 * ring) + y + ring) * (n_cells_[0] + 2 * ring) + x +
+           ring;
   }
   void mark_around(int x, int y, int z);
 
@@ -103,7 +104,7 @@ private:
   std::vector<std::int32_t> first_;
   std::vector<std::int32_t> node_;
   std::vector<double> x_, y_, z_;
-  std::vector<std::uint8_t> near_;           ///< over the cells and the rings around them
+  std::vector<std::uint8_t> near_;          ///< over the cells and the rings around them
   std::vector<std::int32_t> last_inserted_; ///< over the same, or empty
   std::vector<Inserted> inserted_;
 };

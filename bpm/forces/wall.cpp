@@ -18,8 +18,8 @@ double add_wall_forces(const Wall& wall, const Material& material, const LaneLay
       continue;
     }
     const Vector3 v = state.velocity(grain, node);
-    const double force = wall_force(material.k, material.k3, material.gamma, material.diameter, z,
-                                    wall.normal.dot(v - wall.velocity));
+    const double force =
+        wall_force(material.k, material.k3, material.gamma, material.diameter, z, wall.normal.dot(v - wall.velocity));
     f(node, force * wall.normal);
     total += force;
     if (with_sums) {

@@ -22,8 +22,8 @@ struct Wall {
 /// Adds a force to a node of the grain at hand.
 using LaneForce = std::function<void(int node, const Vector3& force)>;
 
-/// Hands one wall's forces on one grain to `f` and returns their sum along the normal. The virial (position of the contact
-/// plane times force) goes to the sums when asked for.
+/// Hands one wall's forces on one grain to `f` and returns their sum along the normal. The virial (position of the
+/// contact plane times force) goes to the sums when asked for.
 double add_wall_forces(const Wall& wall, const Material& material, const LaneLayout& layout, int grain,
                        const LaneState& state, LaneForce f, bool with_sums, kernels::ContactSums& sums);
 

@@ -55,7 +55,8 @@ public:
       }
       const Vector3 shift = box_.h() * Vector3(neighbour.image.a, neighbour.image.b, neighbour.image.c);
       pairs.clear();
-      add_pairs_between(grids_[grain], grids_[neighbour.other], GrainFrame{}.displaced(shift), material_.diameter, pairs);
+      add_pairs_between(grids_[grain], grids_[neighbour.other], GrainFrame{}.displaced(shift), material_.diameter,
+                        pairs);
       GrainContact contact = contact_from(grain, neighbour.other, shift, pairs);
       if (contact.n_pairs > 0) {
         contact.image = {neighbour.image.a, neighbour.image.b, neighbour.image.c};
@@ -66,7 +67,8 @@ public:
   }
 
 private:
-  GrainContact contact_from(int grain, int other, const Vector3& shift, const std::vector<kernels::NodePair>& pairs) const {
+  GrainContact contact_from(int grain, int other, const Vector3& shift,
+                            const std::vector<kernels::NodePair>& pairs) const {
     GrainContact contact{.grain = grain, .other = other};
     contact.branch = centres_[other] + shift - centres_[grain];
     const auto own = grains_.nodes_of(grain), others = grains_.nodes_of(other);

@@ -14,19 +14,22 @@ enum class Precision {
   mixed ///< positions in 32-bit fixed point from their grain's origin, the rest in floats
 };
 
-/// Lanes of a full block: the doubles or floats of one 512-bit register. Narrower registers take a block in several goes.
-constexpr int lanes_of_block(Precision precision) { return precision == Precision::full ? 8 : 16; }
+/// Lanes of a full block: the doubles or floats of one 512-bit register. Narrower registers take a block in several
+/// goes.
+constexpr int lanes_of_block(Precision precision) {
+  return precision == Precision::full ? 8 : 16;
+}
 inline constexpr int max_lanes = 16;
 
 /// One block: up to `n_lanes` grains of one template that advance together.
 struct Block {
   int template_index = 0;
   int n_nodes = 0;
-  int n_lanes = 8;              ///< 16, 8, or 1 for a network that only one grain has
-  std::int64_t offset = 0;      ///< of the block's first number in the arrays of LaneState
-  bool many_body = false;       ///< some lane has alpha != 0
-  std::vector<int> grain;       ///< per lane; -1 marks an idle lane
-  std::vector<double> alpha;    ///< per lane, k d
+  int n_lanes = 8;           ///< 16, 8, or 1 for a network that only one grain has
+  std::int64_t offset = 0;   ///< of the block's first number in the arrays of LaneState
+  bool many_body = false;    ///< some lane has alpha != 0
+  std::vector<int> grain;    ///< per lane; -1 marks an idle lane
+  std::vector<double> alpha; ///< per lane, k d
 
   int n_grains() const;
 };

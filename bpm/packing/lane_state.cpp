@@ -21,7 +21,8 @@ double quantum_for(const Packing& packing) {
 }
 
 template <class Array> Vector3 triple(const Array& array, std::int64_t at, std::int64_t stride) {
-  return {static_cast<double>(array[at]), static_cast<double>(array[at + stride]), static_cast<double>(array[at + 2 * stride])};
+  return {static_cast<double>(array[at]), static_cast<double>(array[at + stride]),
+          static_cast<double>(array[at + 2 * stride])};
 }
 
 template <class Array> void set_triple(Array& array, std::int64_t at, std::int64_t stride, const Vector3& value) {
@@ -71,20 +72,17 @@ LaneState::LaneState(const Packing& packing, const LaneLayout& layout)
 }
 
 Vector3 LaneState::position(int grain, int node) const {
-  const Vector3 x = visit([&](const auto& arrays) {
-    return triple(arrays.x, layout_.index(grain, node, 0), layout_.stride(grain));
-  });
+  const Vector3 x =
+      visit([&](const auto& arrays) { return triple(arrays.x, layout_.index(grain, node, 0), layout_.stride(grain)); });
   return precision() == Precision::full ? x : Vector3(origin_[grain] + quantum_ * x);
 }
 Vector3 LaneState::velocity(int grain, int node) const {
-  return visit([&](const auto& arrays) {
-    return triple(arrays.v, layout_.index(grain, node, 0), layout_.stride(grain));
-  });
+  return visit(
+      [&](const auto& arrays) { return triple(arrays.v, layout_.index(grain, node, 0), layout_.stride(grain)); });
 }
 Vector3 LaneState::force(int grain, int node) const {
-  return visit([&](const auto& arrays) {
-    return triple(arrays.f, layout_.index(grain, node, 0), layout_.stride(grain));
-  });
+  return visit(
+      [&](const auto& arrays) { return triple(arrays.f, layout_.index(grain, node, 0), layout_.stride(grain)); });
 }
 
 void LaneState::set_position(int grain, int node, const Vector3& x) {
@@ -141,7 +139,8 @@ void LaneState::take(const LaneState& other) {
 
 std::size_t LaneState::bytes() const {
   return visit([](const auto& arrays) {
-    return arrays.x.capacity() * sizeof(arrays.x[0]) + (arrays.v.capacity() + arrays.f.capacity()) * sizeof(arrays.v[0]);
+    return arrays.x.capacity() * sizeof(arrays.x[0]) +
+           (arrays.v.capacity() + arrays.f.capacity()) * sizeof(arrays.v[0]);
   });
 }
 

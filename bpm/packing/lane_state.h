@@ -24,17 +24,17 @@ template <class Coordinate_, class Real_> struct LaneArrays {
 
 /// The nodes of a packing as it moves. Velocities are those of half steps between steps (see Stepper).
 ///
-/// In mixed precision a coordinate is an integer number of quanta, a power of two of d that leaves room for four times the
-/// largest grain's radius: 3e-8 d for a grain of radius 10 d. Differences of positions are then exact, and the force on a
-/// bond as good as a float's seven digits; slow drifts are not lost (see kernels/drift_kernel.h).
+/// In mixed precision a coordinate is an integer number of quanta, a power of two of d that leaves room for four times
+/// the largest grain's radius: 3e-8 d for a grain of radius 10 d. Differences of positions are then exact, and the
+/// force on a bond as good as a float's seven digits; slow drifts are not lost (see kernels/drift_kernel.h).
 class LaneState {
 public:
-  /// Copies the packing in; idle lanes get the undeformed template at rest, so that they stay finite and cheap. The layout
-  /// must outlive the state.
+  /// Copies the packing in; idle lanes get the undeformed template at rest, so that they stay finite and cheap. The
+  /// layout must outlive the state.
   LaneState(const Packing& packing, const LaneLayout& layout);
 
   Precision precision() const { return layout_.precision(); }
-  double quantum() const { return quantum_; }               ///< d; 1 in full precision
+  double quantum() const { return quantum_; }                       ///< d; 1 in full precision
   const Vector3& origin(int grain) const { return origin_[grain]; } ///< 0 in full precision
 
   Vector3 position(int grain, int node) const;
@@ -46,8 +46,8 @@ public:
 
   /// Moves the origins with an affine map; the drift moves the nodes. Nothing in full precision.
   void map_origins(const Matrix3& map, const Vector3& shift);
-  /// Puts origins back to where their grains are, by whole quanta; positions do not change. Returns the largest coordinate
-  /// that was met, as a share of the range.
+  /// Puts origins back to where their grains are, by whole quanta; positions do not change. Returns the largest
+  /// coordinate that was met, as a share of the range.
   double recentre();
 
   /// Calls visit with the arrays that are in use.

@@ -48,10 +48,11 @@ struct FrameStress::Impl {
   double evaluate(const Snapshot& snapshot, double half_kick) {
     Matrix3 gradient = Matrix3::Zero();
     gradient(0, 1) = snapshot.streaming_rate;
-    forces.evaluate(state, snapshot.box, {.half_kick = half_kick,
-                                           .virial = Virial::full,
-                                           .keep_forces = true,
-                                           .residual_rate = gradient * snapshot.box.h()});
+    forces.evaluate(state, snapshot.box,
+                    {.half_kick = half_kick,
+                     .virial = Virial::full,
+                     .keep_forces = true,
+                     .residual_rate = gradient * snapshot.box.h()});
     grain.assign(layout.n_grains(), {});
     double size = 0.0;
     Tensor6 total{};

@@ -15,9 +15,7 @@ using boba::kernels::LaneSums;
 using boba::kernels::NetworkOf;
 using boba::kernels::Virial;
 
-template <class V> struct Triple {
-  V c[3];
-};
+template <class V> struct Triple { V c[3]; };
 
 template <class V, class T> inline Triple<V> load3(const T* from, std::int64_t node, int stride) {
   const T* at = from + 3 * node * stride;
@@ -41,7 +39,8 @@ template <class V> inline V dot(const Triple<V>& a, const Triple<V>& b) {
   return multiply_add(a.c[2], b.c[2], multiply_add(a.c[1], b.c[1], a.c[0] * b.c[0]));
 }
 
-/// Adds r^3 of the bonds of the nodes [begin, end) to the volumes of both of their nodes. Pointers start at the first lane.
+/// Adds r^3 of the bonds of the nodes [begin, end) to the volumes of both of their nodes. Pointers start at the first
+/// lane.
 template <class S, class Coordinate = typename S::Coordinate, class Real = typename S::Real>
 void node_volumes(const NetworkOf<Real>& network, const Coordinate* x, Real* volume, int stride, double quantum,
                   std::int64_t begin, std::int64_t end) {
@@ -72,9 +71,7 @@ void volumes_of_nodes(const NetworkOf<Real>& network, const BlockArraysOf<Coordi
 
 /// xx yy zz xy xz yz and the trace. The trace is summed apart, so that the barostat sees the same number whether
 /// somebody reads the whole tensor at this step or not.
-template <class V> struct Tensor {
-  V c[7];
-};
+template <class V> struct Tensor { V c[7]; };
 
 /// Adds s * a (x) a with a . a = a2, or only its trace.
 template <Virial virial, class V> inline void add_dyad(Tensor<V>& sum, V s, const Triple<V>& a, V a2) {
@@ -135,7 +132,8 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
       // still in the cache for the other.
       if (network.reach[i] > volumes_done) {
         const std::int64_t ahead = boba::kernels::volume_chunk;
-        const std::int64_t end = network.reach[i] + ahead < network.n_nodes ? network.reach[i] + ahead : network.n_nodes;
+        const std::int64_t end =
+            network.reach[i] + ahead < network.n_nodes ? network.reach[i] + ahead : network.n_nodes;
         node_volumes<S>(network, x, volume, stride, a.quantum, volumes_done, end);
         volumes_done = end;
       }
@@ -204,9 +202,15 @@ void bond_block(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
   for_lanes<Coordinate>(a.n_lanes, [&](int lane, auto storage) {
     using S = decltype(storage);
     switch (virial) {
-    case Virial::none: bond_lanes<S, many_body, damped, Virial::none>(network, a, p, lane, sums); break;
-    case Virial::trace: bond_lanes<S, many_body, damped, Virial::trace>(network, a, p, lane, sums); break;
-    case Virial::full: bond_lanes<S, many_body, damped, Virial::full>(network, a, p, lane, sums); break;
+    case Virial::none:
+      bond_lanes<S, many_body, damped, Virial::none>(network, a, p, lane, sums);
+      break;
+    case Virial::trace:
+      bond_lanes<S, many_body, damped, Virial::trace>(network, a, p, lane, sums);
+      break;
+    case Virial::full:
+      bond_lanes<S, many_body, damped, Virial::full>(network, a, p, lane, sums);
+      break;
     }
   });
 }

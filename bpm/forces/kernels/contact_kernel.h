@@ -38,8 +38,8 @@ void collect_nodes(const std::int32_t* nodes, std::int64_t n, const Coordinate* 
 /// finds it.
 constexpr std::int64_t prefetch_distance = 16;
 
-/// Writes down the candidates that touch, in order and without a branch, and returns their number. The squared distance waits
-/// in force[0].
+/// Writes down the candidates that touch, in order and without a branch, and returns their number. The squared distance
+/// waits in force[0].
 inline std::int64_t touching_pairs(const ContactCandidates& c, double diameter, Touch* __restrict touches) {
   const double reach2 = diameter * diameter;
   const std::int64_t last = c.n - 1;
@@ -61,8 +61,8 @@ inline std::int64_t touching_pairs(const ContactCandidates& c, double diameter, 
 }
 
 /// Replaces the squared distance by the force on node i.
-inline void evaluate_touch(const ContactCandidates& candidates, const ContactParameters& p, Touch& touch, bool with_sums,
-                           ContactSums& sums) {
+inline void evaluate_touch(const ContactCandidates& candidates, const ContactParameters& p, Touch& touch,
+                           bool with_sums, ContactSums& sums) {
   const ContactNode& a = candidates.first[touch.nodes.i];
   const ContactNode& b = candidates.second[touch.nodes.j];
   const double r2 = touch.force[0];

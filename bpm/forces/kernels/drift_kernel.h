@@ -22,8 +22,8 @@ template <class I, class V> inline I rounded_down(V x) {
   }
 }
 
-/// 64 bits that look random for every number. Source: G. L. Steele, D. Lea & C. H. Flood, "Fast splittable pseudorandom number
-/// generators", OOPSLA 2014 (SplitMix64).
+/// 64 bits that look random for every number. Source: G. L. Steele, D. Lea & C. H. Flood, "Fast splittable pseudorandom
+/// number generators", OOPSLA 2014 (SplitMix64).
 inline std::uint64_t random_bits(std::uint64_t number) {
   std::uint64_t z = number * 0x9e3779b97f4a7c15ULL;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -32,9 +32,9 @@ inline std::uint64_t random_bits(std::uint64_t number) {
 }
 
 /// Doubles: x <- map x + shift + dt v. Fixed point: the origin follows the map outside, the coordinates move by
-/// (map - 1) x + dt v, rounded up or down to quanta with the odds that make the mean exact, drawn anew for every step, node and
-/// component: however slow a drift, none of it is lost. (A sequence that only fills (0, 1) evenly will not do: velocities
-/// answer to the last rounding, and grains creep.)
+/// (map - 1) x + dt v, rounded up or down to quanta with the odds that make the mean exact, drawn anew for every step,
+/// node and component: however slow a drift, none of it is lost. (A sequence that only fills (0, 1) evenly will not do:
+/// velocities answer to the last rounding, and grains creep.)
 template <class S, bool mapped, class Coordinate = typename S::Coordinate, class Real = typename S::Real>
 void drift_lanes(Coordinate* x, const Real* v, int n_nodes, int stride, const Drift& drift, int lane,
                  typename S::V& speed2, typename S::V& checksum) {
@@ -73,8 +73,7 @@ void drift_lanes(Coordinate* x, const Real* v, int n_nodes, int stride, const Dr
         const V odds = splat<V>((static_cast<double>(draw >> (21 * c) & 0x1fffff) + 0.5) / 0x200000);
         store<P>(at + c * stride, place[c] + rounded_down<P>(multiply_add(move, per_quantum, odds)));
       } else {
-        const V moved =
-            mapped ? m[c][0] * p[0] + m[c][1] * p[1] + m[c][2] * p[2] + splat<V>(drift.shift[c]) : p[c];
+        const V moved = mapped ? m[c][0] * p[0] + m[c][1] * p[1] + m[c][2] * p[2] + splat<V>(drift.shift[c]) : p[c];
         store<V>(at + c * stride, moved + dt * u[c]);
       }
     }

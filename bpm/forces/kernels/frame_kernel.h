@@ -11,7 +11,9 @@ using boba::kernels::FrameArraysOf;
 using boba::kernels::FrameFit;
 using boba::kernels::LaneFrames;
 
-template <class V> inline V load_floats(const float* from) { return converted<V>(load<Vector<float, lanes_of<V>>>(from)); }
+template <class V> inline V load_floats(const float* from) {
+  return converted<V>(load<Vector<float, lanes_of<V>>>(from));
+}
 
 template <class S, class Coordinate = typename S::Coordinate>
 void fit_lanes(const FrameArraysOf<Coordinate>& a, int lane, FrameFit& fit) {
@@ -45,7 +47,8 @@ void fit_lanes(const FrameArraysOf<Coordinate>& a, int lane, FrameFit& fit) {
 }
 
 template <class Coordinate> void fit_frames(const FrameArraysOf<Coordinate>& arrays, FrameFit& fit) {
-  for_lanes<Coordinate>(arrays.n_lanes, [&](int lane, auto storage) { fit_lanes<decltype(storage)>(arrays, lane, fit); });
+  for_lanes<Coordinate>(arrays.n_lanes,
+                        [&](int lane, auto storage) { fit_lanes<decltype(storage)>(arrays, lane, fit); });
 }
 
 template <class V> inline bool any_above(V r2, V limit) {

@@ -4,9 +4,9 @@
 #include <compare>
 #include <cstdint>
 
-// The hot loops as plain functions on raw arrays, compiled once for each instruction set (kernels.cpp) and reached through
-// a table of pointers. Only this header knows them both; it must stay free of library types, so that no inline function of
-// a library is compiled for a machine that cannot run it.
+// The hot loops as plain functions on raw arrays, compiled once for each instruction set (kernels.cpp) and reached
+// through a table of pointers. Only this header knows them both; it must stay free of library types, so that no inline
+// function of a library is compiled for a machine that cannot run it.
 
 namespace boba::kernels {
 
@@ -50,8 +50,8 @@ using BlockArrays = BlockArraysOf<double, double>;
 
 struct BondParameters {
   double k, gamma;
-  double kick;         ///< v += kick f, once a node's force is complete: dt/m, dt/2m at the start, 0 to look only
-  double half_kick;    ///< full-step velocity = v + half_kick f, for the kinetic part of the stress
+  double kick;      ///< v += kick f, once a node's force is complete: dt/m, dt/2m at the start, 0 to look only
+  double half_kick; ///< full-step velocity = v + half_kick f, for the kinetic part of the stress
   double mass;
   /// Streaming velocity along x, not counted as kinetic: residual . x + the lane's shift, x as the arrays hold it.
   double residual[3];
@@ -74,9 +74,9 @@ struct Drift {
   /// The cell's motion along x that does not act on positions, to be taken from velocities before their size is
   /// measured: u_x = v_x - (residual . x + residual_shift).
   double residual[3], residual_shift;
-  double quantum;   ///< d; mixed only
-  std::uint64_t dither_seed; ///< another one each step; mixed only
-  int first_node;            ///< number of the first node in its grain; mixed only
+  double quantum;               ///< d; mixed only
+  std::uint64_t dither_seed;    ///< another one each step; mixed only
+  int first_node;               ///< number of the first node in its grain; mixed only
   double lane_shift[max_lanes]; ///< residual_shift, with the lane's origin; mixed only
 };
 
@@ -86,8 +86,8 @@ struct DriftResult {
   double checksum;       ///< a sum of all v^2: not finite when any velocity is not
 };
 
-/// Position and velocity of a node that may touch another, copied together onto one cache line before the contact pass: in
-/// the lane layout they are spread over six.
+/// Position and velocity of a node that may touch another, copied together onto one cache line before the contact pass:
+/// in the lane layout they are spread over six.
 struct alignas(64) ContactNode {
   double x[3], v[3];
 };
@@ -108,7 +108,7 @@ struct Touch {
 struct ContactCandidates {
   const NodePair* pairs;
   std::int64_t n;
-  const ContactNode *first, *second; ///< node 0 of each grain
+  const ContactNode *first, *second;  ///< node 0 of each grain
   double shift[3], shift_velocity[3]; ///< what to add to the second grain's positions and velocities
 };
 
@@ -118,9 +118,9 @@ struct ContactParameters {
 
 /// Over the contacts of one pair of grains; both have half of the virial.
 struct ContactSums {
-  double virial[6];    ///< xx yy zz xy xz yz, k d^2
-  double smallest_r2;  ///< d^2
-  double potential;    ///< k d^2
+  double virial[6];   ///< xx yy zz xy xz yz, k d^2
+  double smallest_r2; ///< d^2
+  double potential;   ///< k d^2
   std::int64_t n_touching;
 };
 
@@ -187,8 +187,8 @@ extern const KernelTable avx512_table;
 extern const KernelTable avx2_table;
 extern const KernelTable baseline_table;
 
-/// The table for the widest instruction set this machine has; BOBA_ISA=baseline|avx2|avx512 in the environment chooses a
-/// narrower one.
+/// The table for the widest instruction set this machine has; BOBA_ISA=baseline|avx2|avx512 in the environment chooses
+/// a narrower one.
 const KernelTable& best_table();
 
 } // namespace boba::kernels

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Included by kernels.cpp only, once for each instruction set: everything here lives in an unnamed namespace of its own.
+// Included by kernels.cpp only, once for each instruction set: everything here lives in an unnamed namespace of its
+// own.
 #pragma once
 
 #include <cmath>
@@ -24,12 +25,8 @@ constexpr int native_lanes = 2;
 #endif
 
 /// Vectors of N numbers; + - * / and comparisons act lane by lane.
-template <class T, int N> struct VectorOf {
-  using Type __attribute__((vector_size(sizeof(T) * N))) = T;
-};
-template <class T> struct VectorOf<T, 1> {
-  using Type = T;
-};
+template <class T, int N> struct VectorOf { using Type __attribute__((vector_size(sizeof(T) * N))) = T; };
+template <class T> struct VectorOf<T, 1> { using Type = T; };
 template <class T, int N> using Vector = typename VectorOf<T, N>::Type;
 
 /// The widest register of doubles of this instruction set, that of floats, and as many floats as there are doubles.
@@ -44,15 +41,9 @@ template <> constexpr int lanes_of<float> = 1;
 template <> constexpr int lanes_of<std::int32_t> = 1;
 
 /// The number type of a vector, and vectors of other types with as many lanes.
-template <class V> struct ElementOf {
-  using Type = std::remove_cvref_t<decltype(std::declval<V>()[0])>;
-};
-template <> struct ElementOf<double> {
-  using Type = double;
-};
-template <> struct ElementOf<float> {
-  using Type = float;
-};
+template <class V> struct ElementOf { using Type = std::remove_cvref_t<decltype(std::declval<V>()[0])>; };
+template <> struct ElementOf<double> { using Type = double; };
+template <> struct ElementOf<float> { using Type = float; };
 template <class V> using Element = typename ElementOf<V>::Type;
 template <class V> using IntsOf = Vector<std::int32_t, lanes_of<V>>;
 template <class V> using DoublesOf = Vector<double, lanes_of<V>>;
@@ -70,7 +61,9 @@ template <class V, class T> inline V load(const T* from) {
   std::memcpy(&value, from, sizeof(V));
   return value;
 }
-template <class V, class T> inline void store(T* to, V value) { std::memcpy(to, &value, sizeof(V)); }
+template <class V, class T> inline void store(T* to, V value) {
+  std::memcpy(to, &value, sizeof(V));
+}
 
 template <class V> inline V splat(double value) {
   if constexpr (lanes_of<V> == 1) {
@@ -80,8 +73,8 @@ template <class V> inline V splat(double value) {
   }
 }
 
-/// a * b + c and c - a * b, fused where the machine can. Written out because the compiler is told not to contract by itself:
-/// two versions of a loop (with and without a virial) must give the same forces to the last bit.
+/// a * b + c and c - a * b, fused where the machine can. Written out because the compiler is told not to contract by
+/// itself: two versions of a loop (with and without a virial) must give the same forces to the last bit.
 inline double multiply_add(double a, double b, double c) {
 #if defined(__FMA__)
   return __builtin_fma(a, b, c);
@@ -121,9 +114,13 @@ inline WideFloat multiply_add(WideFloat a, WideFloat b, WideFloat c) {
   return a * b + c;
 #endif
 }
-template <class V> inline V subtract_product(V c, V a, V b) { return multiply_add(-a, b, c); }
+template <class V> inline V subtract_product(V c, V a, V b) {
+  return multiply_add(-a, b, c);
+}
 
-template <class V> inline V larger(V a, V b) { return a > b ? a : b; }
+template <class V> inline V larger(V a, V b) {
+  return a > b ? a : b;
+}
 
 template <class V> inline double sum_of(V v) {
   if constexpr (lanes_of<V> == 1) {
@@ -148,7 +145,9 @@ template <class V> inline double largest_of(V v) {
   }
 }
 
-inline double inverse_sqrt(double x) { return 1.0 / std::sqrt(x); }
+inline double inverse_sqrt(double x) {
+  return 1.0 / std::sqrt(x);
+}
 
 /// 1 / sqrt(x) to about one unit in the last place. The hardware's square root and division take several times as long
 /// as its 14-bit estimate and one step of the series (1 - h)^(-1/2) = 1 + h/2 + 3h^2/8 + 5h^3/16, h = 1 - x y^2.
@@ -160,7 +159,7 @@ inline Wide inverse_sqrt(Wide x) {
   return multiply_add(y, h * series, y);
 #elif defined(__AVX2__)
   // The estimate exists for floats only and has 12 bits: one Newton step before the series.
-  Wide y = __builtin_convertvector((WideFloat)_mm_rsqrt_ps((__m128)__builtin_convertvector(x, WideFloat)), Wide);
+  Wide y = __builtin_convertvector((WideFloat)_mm_rsqrt_ps((__m128) __builtin_convertvector(x, WideFloat)), Wide);
   y = y * subtract_product(splat<Wide>(1.5), 0.5 * x * y, y);
   const Wide h = subtract_product(splat<Wide>(1.0), x * y, y);
   return multiply_add(y, h * multiply_add(h, splat<Wide>(0.375), splat<Wide>(0.5)), y);
@@ -173,7 +172,9 @@ inline Wide inverse_sqrt(Wide x) {
 #endif
 }
 
-inline float inverse_sqrt(float x) { return 1.0f / std::sqrt(x); }
+inline float inverse_sqrt(float x) {
+  return 1.0f / std::sqrt(x);
+}
 
 /// One step on the hardware's estimate of 1/sqrt(x): to about one unit in a float's last place.
 template <class V> inline V improved_inverse_sqrt(V x, V y) {
@@ -204,8 +205,12 @@ inline WideFloat inverse_sqrt(WideFloat x) {
 #endif
 }
 
-inline double cube_root(double x) { return std::cbrt(x); }
-inline float cube_root(float x) { return std::cbrt(x); }
+inline double cube_root(double x) {
+  return std::cbrt(x);
+}
+inline float cube_root(float x) {
+  return std::cbrt(x);
+}
 
 template <class V> inline bool any_outside(V x, double low, double high) {
 #if defined(__AVX512F__)
@@ -231,12 +236,13 @@ inline Wide cube_root_of_any(Wide x) {
   const WideFloat xf = __builtin_convertvector(x, WideFloat);
   // Dividing the float's bits by -3 divides its logarithm by -3; the constant makes |h| <= 0.102 over all x.
   const WideFloat bits = __builtin_convertvector((WideInt)xf, WideFloat);
-  WideFloat yf = (WideFloat)__builtin_convertvector(1419900160.0f - bits * (1.0f / 3.0f), WideInt);
+  WideFloat yf = (WideFloat) __builtin_convertvector(1419900160.0f - bits * (1.0f / 3.0f), WideInt);
   const WideFloat hf = 1.0f - xf * yf * yf * yf;
   yf = yf + yf * (hf * (1.0f / 3.0f + hf * (2.0f / 9.0f + hf * (14.0f / 81.0f))));
   const Wide y = __builtin_convertvector(yf, Wide);
   const Wide h = subtract_product(splat<Wide>(1.0), x * y, y * y);
-  const Wide series = multiply_add(h, multiply_add(h, splat<Wide>(14.0 / 81.0), splat<Wide>(2.0 / 9.0)), splat<Wide>(1.0 / 3.0));
+  const Wide series =
+      multiply_add(h, multiply_add(h, splat<Wide>(14.0 / 81.0), splat<Wide>(2.0 / 9.0)), splat<Wide>(1.0 / 3.0));
   const Wide z = multiply_add(y, h * series, y);
   return x * z * z;
 }
@@ -245,15 +251,15 @@ inline Wide cube_root_of_any(Wide x) {
 template <class V> inline V near_inverse_cube_root(V x) {
   const V t = x - static_cast<Element<V>>(1.0);
   V y = splat<V>(-0.07066835568187121);
-  for (const double c : {0.17781975688620016, -0.20453628969115334, 0.22143791401899482, -0.33058278061251845,
-                         0.9999736554168059}) {
+  for (const double c :
+       {0.17781975688620016, -0.20453628969115334, 0.22143791401899482, -0.33058278061251845, 0.9999736554168059}) {
     y = multiply_add(y, t, splat<V>(c));
   }
   return y;
 }
 
-/// x^(1/3) for floats: the polynomial and one step of the series up to h^2. Far from 1, where no grain in one piece is, lane by
-/// lane.
+/// x^(1/3) for floats: the polynomial and one step of the series up to h^2. Far from 1, where no grain in one piece is,
+/// lane by lane.
 template <class V> inline V cube_root_single(V x) {
   if (__builtin_expect(any_outside(x, 0.5, 2.0), 0)) {
     V result{};
@@ -267,8 +273,12 @@ template <class V> inline V cube_root_single(V x) {
   const V z = multiply_add(y, h * multiply_add(h, splat<V>(2.0 / 9.0), splat<V>(1.0 / 3.0)), y);
   return x * z * z;
 }
-inline WideSingle cube_root(WideSingle x) { return cube_root_single(x); }
-inline WideFloat cube_root(WideFloat x) { return cube_root_single(x); }
+inline WideSingle cube_root(WideSingle x) {
+  return cube_root_single(x);
+}
+inline WideFloat cube_root(WideFloat x) {
+  return cube_root_single(x);
+}
 
 /// x^(1/3) to a few units in the last place. Volume ratios are near 1: there a polynomial gives x^(-1/3), and
 /// one step of the series above up to h^4 does the rest.
@@ -329,7 +339,11 @@ template <class Coordinate, class Visit> inline void for_lanes(int n_lanes, Visi
 }
 
 /// Numbers of the lanes as V, from doubles and back.
-template <class V> inline V load_doubles(const double* from) { return converted<V>(load<DoublesOf<V>>(from)); }
-template <class V> inline void store_doubles(double* to, V value) { store<DoublesOf<V>>(to, converted<DoublesOf<V>>(value)); }
+template <class V> inline V load_doubles(const double* from) {
+  return converted<V>(load<DoublesOf<V>>(from));
+}
+template <class V> inline void store_doubles(double* to, V value) {
+  store<DoublesOf<V>>(to, converted<DoublesOf<V>>(value));
+}
 
 } // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// 64 grains of 303 nodes at P~ = 0.1, sheared from the same state as LAMMPS did (tests/data/packing64): rate 1e-3, positions
-// remapped, pressure held with gain 0.02, alpha = 0.
+// 64 grains of 303 nodes at P~ = 0.1, sheared from the same state as LAMMPS did (tests/data/packing64): rate 1e-3,
+// positions remapped, pressure held with gain 0.02, alpha = 0.
 #include "bpm/dynamics/stepper.h"
 #include "bpm/io/lammps_packing.h"
 
@@ -48,8 +48,8 @@ TEST_P(Packing64, ShearsLikeThePeerFromTheSameState) {
   std::size_t next = 1;
   for (int step = 1; step <= 1000; ++step) {
     const bool compared = step % 20 == 0;
-    // The strain that the peer reports refers to the initial Ly, and it holds P~ = 0.1 with a rounded modulus: the two runs
-    // part slowly.
+    // The strain that the peer reports refers to the initial Ly, and it holds P~ = 0.1 with a rounded modulus: the two
+    // runs part slowly.
     stepper.advance(compared ? Virial::full : Virial::trace);
     if (compared) {
       ASSERT_EQ(rows[next].step, step);

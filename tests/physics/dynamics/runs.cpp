@@ -13,7 +13,9 @@ namespace {
 
 const Box tilted({0.3, -1.0, 2.0}, {12.0, 11.0, 13.0}, {5.0, -4.0, 4.5});
 
-Packing nine_grains(double alpha = 2.0) { return small_packing({.box = tilted, .n_grains = 9, .alpha = alpha}); }
+Packing nine_grains(double alpha = 2.0) {
+  return small_packing({.box = tilted, .n_grains = 9, .alpha = alpha});
+}
 
 void expect_same_bits(const Snapshot& a, const Snapshot& b) {
   EXPECT_EQ(a.step, b.step);
@@ -126,11 +128,14 @@ TEST(Runs, SlowDriftInMixedPrecision) {
   EXPECT_LT(std::sqrt(noise), 3.0 * quantum / stepper.options().dt);
 }
 
-TEST(Runs, DoNotDependOnWhoIsWatching) { expect_same_bits(sheared(2), sheared(2, 7)); }
+TEST(Runs, DoNotDependOnWhoIsWatching) {
+  expect_same_bits(sheared(2), sheared(2, 7));
+}
 
 TEST(Runs, ContinueBitForBitFromAnyStep) {
-  for (const auto& [remap, precision] : {std::pair(Remap::positions, Precision::full), std::pair(Remap::velocities, Precision::full),
-                                        std::pair(Remap::positions, Precision::mixed)}) {
+  for (const auto& [remap, precision] :
+       {std::pair(Remap::positions, Precision::full), std::pair(Remap::velocities, Precision::full),
+        std::pair(Remap::positions, Precision::mixed)}) {
     const Snapshot whole = sheared(2, 1000000, remap, precision);
     for (const std::int64_t stop_at : {1, 2, 37, 150, 299}) {
       Simulation first(nine_grains(), {}, {.threads = 2, .precision = precision});
@@ -145,7 +150,8 @@ TEST(Runs, ContinueBitForBitFromAnyStep) {
   }
 }
 
-// The same lattice in other cell vectors: a flip must change nothing. The barostat is on, so that the pressure is in the loop.
+// The same lattice in other cell vectors: a flip must change nothing. The barostat is on, so that the pressure is in
+// the loop.
 TEST(Runs, FlipChangesNothing) {
   Stepper flipping(nine_grains(), {}, {});
   Box upright = tilted;
@@ -176,8 +182,8 @@ TEST(Runs, FlipChangesNothing) {
   EXPECT_NEAR(flipping.pressure(), leaning.pressure(), 1e-9);
 }
 
-// A list that lives for many steps and one that is made anew at every step find the same contacts: the same bits come out,
-// while grains are sheared, squeezed and turned, the cell flips and single nodes are shot through the packing.
+// A list that lives for many steps and one that is made anew at every step find the same contacts: the same bits come
+// out, while grains are sheared, squeezed and turned, the cell flips and single nodes are shot through the packing.
 TEST(Runs, LongLivedContactListsMissNothing) {
   for (const Remap remap : {Remap::positions, Remap::velocities}) {
     const Precision precision = remap == Remap::positions ? Precision::full : Precision::mixed;
@@ -287,8 +293,9 @@ TEST(Runs, EnergyOfAnUndampedPairwisePackingIsKeptToSecondOrder) {
 }
 
 TEST(Runs, CompressSettlesAtItsPressure) {
-  Simulation simulation(small_packing({.box = Box({0, 0, 0}, {13, 13, 13}), .n_grains = 9, .jitter = 0.0, .speed = 0.0}), {},
-                        {.threads = 2});
+  Simulation simulation(
+      small_packing({.box = Box({0, 0, 0}, {13, 13, 13}), .n_grains = 9, .jitter = 0.0, .speed = 0.0}), {},
+      {.threads = 2});
   const CompressStage stage = {.barostat = {.pressure = 0.05}, .rate = 2e-3};
   ASSERT_EQ(simulation.run(0, stage, {}), RunOutcome::finished);
   simulation.run(1, HoldStage{.time = 0.1}, {});
@@ -346,7 +353,7 @@ TEST(Runs, PressBetweenClampsStretchesAsAsked) {
   }
   const double free_height = high - low - 2.0 * stage.clamp_thickness;
   EXPECT_NEAR(simulation.end_gap(), 0.95 * free_height, 2.0 * stage.velocity * 0.1); // to one step
-  EXPECT_GT(simulation.end_forces()[0], 0.0); // squeezed ends push apart
+  EXPECT_GT(simulation.end_forces()[0], 0.0);                                        // squeezed ends push apart
   EXPECT_NEAR(simulation.end_forces()[0], simulation.end_forces()[1], 0.2 * simulation.end_forces()[1]);
 }
 
@@ -380,8 +387,9 @@ TEST(Runs, NotANumberIsNoticedAtOnce) {
 }
 
 TEST(Runs, TooLargeATimeStepIsNoticedWithinAHundredSteps) {
-  Simulation simulation(small_packing({.box = Box({0, 0, 0}, {14, 14, 14}), .n_grains = 9, .alpha = 12.0, .jitter = 1e-3}), {},
-                        {.dt = 0.6});
+  Simulation simulation(
+      small_packing({.box = Box({0, 0, 0}, {14, 14, 14}), .n_grains = 9, .alpha = 12.0, .jitter = 1e-3}), {},
+      {.dt = 0.6});
   EXPECT_THROW(simulation.run(0, HoldStage{.time = 1000.0}, {}), BlowUp);
   EXPECT_LE(simulation.step(), 100);
 }

@@ -73,8 +73,8 @@ TEST(ForceField, AllAlphasInFullAndRaggedBlocks) {
   }
 }
 
-// A bond's force in floats: r, r / r0 and the cube root are off by a few units in the 24th bit, each times k + |alpha|; a node has
-// up to 16 bonds, and its position is off by half a quantum.
+// A bond's force in floats: r, r / r0 and the cube root are off by a few units in the 24th bit, each times k + |alpha|;
+// a node has up to 16 bonds, and its position is off by half a quantum.
 TEST(ForceField, MixedPrecisionIsAsGoodAsAFloat) {
   for (const double alpha : {-0.8, 0.0, 2.0, 12.0}) {
     for (const int n_grains : {1, 2, 7, 8, 9, 16, 17}) {
@@ -100,7 +100,9 @@ TEST(ForceField, MixedPrecisionIsAsGoodAsAFloat) {
   }
 }
 
-TEST(ForceField, TiltedCell) { expect_agreement(small_packing({.box = tilted, .n_grains = 9})); }
+TEST(ForceField, TiltedCell) {
+  expect_agreement(small_packing({.box = tilted, .n_grains = 9}));
+}
 
 TEST(ForceField, ImagesWithVelocity) {
   Matrix3 rate = Matrix3::Zero();
@@ -185,8 +187,12 @@ TEST(ForceField, NewtonsThirdLaw) {
 
 // A grain that is only moved and turned, at rest or in rigid motion, feels nothing.
 TEST(ForceField, RigidMotionGivesNoForce) {
-  Packing packing =
-      small_packing({.box = Box({0, 0, 0}, {40, 40, 40}), .n_grains = 3, .alpha = 12.0, .jitter = 0.0, .speed = 0.0, .least_distance = 8.0});
+  Packing packing = small_packing({.box = Box({0, 0, 0}, {40, 40, 40}),
+                                   .n_grains = 3,
+                                   .alpha = 12.0,
+                                   .jitter = 0.0,
+                                   .speed = 0.0,
+                                   .least_distance = 8.0});
   const Vector3 spin(0.02, -0.05, 0.03), drift(0.3, 0.1, -0.2);
   for (std::size_t i = 0; i < packing.position.size(); ++i) {
     packing.velocity[i] = drift + spin.cross(packing.position[i]);
