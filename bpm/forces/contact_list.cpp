@@ -17,33 +17,6 @@ namespace {
 /// Margin of the list of neighbouring grains, d.
 constexpr double neighbour_margin = 1.0;
 
-Bounds widened(const Bounds& bounds, double by) {
-  return {bounds.low - Vector3::Constant(by), bounds.high + Vector3::Constant(by)};
-}
-
-template <class Visit> void for_each_corner(const Bounds& bounds, Visit&& visit) {
-  for (int corner = 0; corner < 8; ++corner) {
-    Vector3 x;
-    for (int axis = 0; axis < 3; ++axis) {
-      x[axis] = (corner >> axis & 1) != 0 ? bounds.high[axis] : bounds.low[axis];
-    }
-    visit(x);
-  }
-}
-
-Bounds mapped(const Bounds& bounds, const GrainFrame& frame) {
-  Bounds result;
-  for_each_corner(bounds, [&](const Vector3& x) {
-    result.low = result.low.cwiseMin(frame(x));
-    result.high = result.high.cwiseMax(frame(x));
-  });
-  return result;
-}
-
-bool contains(const Bounds& bounds, const Vector3& x) {
-  return (x - bounds.low).minCoeff() >= 0.0 && (bounds.high - x).minCoeff() >= 0.0;
-}
-
 Vector3 lattice_vector(const Box& box, const ImageVector& n) {
   return box.h() * Vector3(n.a, n.b, n.c);
 }
@@ -66,23 +39,26 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
     return false;
   }
   track(state);
-  if (!built_ || neighbour_guarantee(box) < reach_between()) {
+  double guaranteed = built_ ? neighbour_guarantee(box) : 0.0;
+  if (guaranteed < reach_between()) {
     find_neighbours(box);
+    guaranteed = neighbour_guarantee(box);
   }
-  double guaranteed = neighbour_guarantee(box);
   const int n_pairs = static_cast<int>(pairs_.size());
   std::int64_t searched = 0;
 #pragma omp parallel for schedule(dynamic, 4) reduction(min : guaranteed) reduction(+ : searched)
   for (int p = 0; p < n_pairs; ++p) {
     ContactPair& pair = pairs_[p];
-    if (!pair.searched || grains_[pair.a].anew || grains_[pair.b].anew ||
-        guarantee(pair, box) < diameter_ + reserve()) {
+    const bool usable = pair.searched && !grains_[pair.a].anew && !grains_[pair.b].anew;
+    double kept = usable ? guarantee(pair, box) : 0.0;
+    if (kept < diameter_ + reserve()) {
       search(pair, box, *network_of_grain[pair.a]);
+      kept = guarantee(pair, box);
       ++searched;
     } else {
       add_moved(pair, *network_of_grain[pair.a]);
     }
-    guaranteed = std::min(guaranteed, guarantee(pair, box));
+    guaranteed = std::min(guaranteed, kept);
   }
   counts_.pairs += searched;
 #pragma omp parallel for schedule(dynamic, 1)
@@ -118,7 +94,7 @@ void ContactList::find_neighbours(const Box& box) {
   std::vector<Bounds> bounds(n_grains);
   for (int g = 0; g < n_grains; ++g) {
     TrackedGrain& grain = grains_[g];
-    bounds[g] = widened(mapped(widened(grain.grid.bounds(), bounds_margin), grain.frame), grain.stray);
+    bounds[g] = grain.grid.bounds().widened(bounds_margin).mapped(grain.frame).widened(grain.stray);
     grain.neighbour_frame = grain.frame;
   }
   std::vector<std::vector<NeighbourGrain>> neighbours(n_grains);
@@ -162,7 +138,7 @@ double ContactList::neighbour_guarantee(const Box& box) const {
   double farthest = 0.0;
   for (const TrackedGrain& grain : grains_) {
     const GrainFrame carried = with_cell.after(grain.neighbour_frame);
-    for_each_corner(widened(grain.grid.bounds(), bounds_margin), [&](const Vector3& x) {
+    grain.grid.bounds().widened(bounds_margin).for_each_corner([&](const Vector3& x) {
       farthest = std::max(farthest, (grain.frame(x) - carried(x)).norm() + grain.stray);
     });
   }
@@ -188,7 +164,7 @@ double ContactList::guarantee(const ContactPair& pair, const Box& box) const {
   }
   const GrainFrame moved_a = a.frame.after(pair.frame_a.inverse());
   double slid = 0.0;
-  for_each_corner(pair.zone, [&](const Vector3& x) { slid = std::max(slid, (moved_a(x) - moved_b(x)).norm()); });
+  pair.zone.for_each_corner([&](const Vector3& x) { slid = std::max(slid, (moved_a(x) - moved_b(x)).norm()); });
   return reach_between() * (1.0 - e) - slid - a.stray - b.stray;
 }
 
@@ -207,10 +183,10 @@ void ContactList::search(ContactPair& pair, const Box& box, const NetworkData& n
   if (pair.inside()) {
     add_pairs_inside(a.grid, network, reach_inside(), pair.candidates);
   } else {
-    const Bounds of_a = mapped(widened(a.grid.bounds(), bounds_margin), pair.frame_a);
-    const Bounds of_b = mapped(widened(b.grid.bounds(), bounds_margin), pair.frame_b);
-    pair.bounds_a = widened(of_a, reach_between());
-    pair.bounds_b = widened(of_b, reach_between());
+    const Bounds of_a = a.grid.bounds().widened(bounds_margin).mapped(pair.frame_a);
+    const Bounds of_b = b.grid.bounds().widened(bounds_margin).mapped(pair.frame_b);
+    pair.bounds_a = of_a.widened(reach_between());
+    pair.bounds_b = of_b.widened(reach_between());
     pair.zone = {of_a.low.cwiseMax(pair.bounds_b.low), of_a.high.cwiseMin(pair.bounds_b.high)};
     if ((pair.zone.high - pair.zone.low).minCoeff() > 0.0) {
       add_pairs_between(a.grid, b.grid, pair.frame_a.inverse().after(pair.frame_b), radius_in(pair.frame_a),
@@ -246,27 +222,24 @@ void ContactList::add_moved_inside(ContactPair& pair, const NetworkData& network
 
 void ContactList::add_moved_between(ContactPair& pair) const {
   thread_local std::vector<std::int32_t> nodes;
-  const TrackedGrain &a = grains_[pair.a], &b = grains_[pair.b];
-  for (const std::int32_t i : a.moved) {
-    const Vector3 x = pair.frame_a(place(pair.a, i));
-    if (contains(pair.bounds_b, x)) {
-      nodes.clear();
-      add_nodes_near(b.grid, pair.frame_b.inverse()(x), radius_in(pair.frame_b), nodes);
-      for (const std::int32_t j : nodes) {
-        pair.candidates.push_back({i, j});
+  /// Calls add(node, other node) for the grain's moved nodes and the other grain's nodes near them.
+  const auto look_up = [&](int grain, const GrainFrame& frame, int other, const GrainFrame& other_frame,
+                           const Bounds& other_bounds, const auto& add) {
+    for (const std::int32_t node : grains_[grain].moved) {
+      const Vector3 x = frame(place(grain, node));
+      if (other_bounds.contains(x)) {
+        nodes.clear();
+        add_nodes_near(grains_[other].grid, other_frame.inverse()(x), radius_in(other_frame), nodes);
+        for (const std::int32_t near : nodes) {
+          add(node, near);
+        }
       }
     }
-  }
-  for (const std::int32_t j : b.moved) {
-    const Vector3 x = pair.frame_b(place(pair.b, j));
-    if (contains(pair.bounds_a, x)) {
-      nodes.clear();
-      add_nodes_near(a.grid, pair.frame_a.inverse()(x), radius_in(pair.frame_a), nodes);
-      for (const std::int32_t i : nodes) {
-        pair.candidates.push_back({i, j});
-      }
-    }
-  }
+  };
+  look_up(pair.a, pair.frame_a, pair.b, pair.frame_b, pair.bounds_b,
+          [&](std::int32_t i, std::int32_t j) { pair.candidates.push_back({i, j}); });
+  look_up(pair.b, pair.frame_b, pair.a, pair.frame_a, pair.bounds_a,
+          [&](std::int32_t j, std::int32_t i) { pair.candidates.push_back({i, j}); });
 }
 
 /// Sorts the candidates from `sorted` on into those before, and strikes out what is bonded or stands twice.

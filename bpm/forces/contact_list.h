@@ -23,8 +23,8 @@ namespace boba {
 ///
 /// Candidates are sorted by nodes, pairs by grains and image: an order that follows from the state alone.
 /// Since candidates that do not touch add nothing, forces are bit for bit the same whether a pair was searched at this
-/// step or earlier, by one thread or by many. (Nothing of the list needs to be stored in a checkpoint.) Source:
-/// docs/decisions/contacts.md.
+/// step or earlier, by one thread or by many. (Nothing of the list needs to be stored in a checkpoint.)
+/// Source: docs/decisions/contacts.md.
 class ContactList {
 public:
   ContactList(const LaneLayout& layout, const kernels::KernelTable& table, double diameter, double skin);
@@ -110,8 +110,8 @@ private:
   double diameter_, skin_, skin_between_;
   bool built_ = false;
   Matrix3 cell_since_tracking_ = Matrix3::Identity(), cell_since_neighbours_ = Matrix3::Identity();
-  double guaranteed_ =
-      0.0; ///< all pairs of nodes that are not listed were farther apart when the grains were last tracked, d
+  /// All pairs of nodes that are not listed were farther apart when the grains were last tracked, d.
+  double guaranteed_ = 0.0;
   double crept_ = 0.0;        ///< bound on any node's motion since then beyond the cell's, d
   AlignedArray<float> place_; ///< X, lane layout, d
   std::vector<TrackedGrain> grains_;

@@ -97,28 +97,13 @@ private:
   std::int32_t n_ = 0;
 };
 
-/// Bounds of a box after an affine map.
-Bounds mapped(const Bounds& bounds, const GrainFrame& map) {
-  Bounds result;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vector3 x;
-    for (int axis = 0; axis < 3; ++axis) {
-      x[axis] = (corner >> axis & 1) != 0 ? bounds.high[axis] : bounds.low[axis];
-    }
-    result.low = result.low.cwiseMin(map(x));
-    result.high = result.high.cwiseMax(map(x));
-  }
-  return result;
-}
-
 } // namespace
 
 void add_pairs_between(const GrainGrid& a, const GrainGrid& b, const GrainFrame& b_to_a, double radius,
                        std::vector<kernels::NodePair>& pairs) {
   const Vector3 margin = Vector3::Constant(radius);
   // Inserted places of a may be one cell outside its bounds.
-  const Vector3 outside = Vector3::Constant(radius + a.reach());
-  const Bounds region = mapped({a.bounds().low - outside, a.bounds().high + outside}, b_to_a.inverse());
+  const Bounds region = a.bounds().widened(radius + a.reach()).mapped(b_to_a.inverse());
   NearPlaces near(a, radius);
   const auto add = [&](std::int32_t j, const Vector3& place) {
     const Vector3 x = b_to_a(place);

@@ -139,8 +139,7 @@ void ContactList::note_all(int g, const LaneState& state) {
       place_[at + c * stride] = static_cast<float>(x[c]);
       places[node][c] = place_[at + c * stride];
     }
-    bounds.low = bounds.low.cwiseMin(places[node]);
-    bounds.high = bounds.high.cwiseMax(places[node]);
+    bounds.include(places[node]);
     moments += places[node] * places[node].transpose();
   }
   // A flat or tiny grain has no full set of moments: its frame then only turns and shears where it can.
@@ -157,12 +156,12 @@ void ContactList::note_all(int g, const LaneState& state) {
 bool ContactList::note_moved(int g, const LaneState& state) {
   TrackedGrain& grain = grains_[g];
   const GrainFrame back = grain.frame.inverse();
+  const Bounds allowed = grain.grid.bounds().widened(bounds_margin);
   const std::int64_t stride = layout_.stride(g);
   for (const std::int32_t node : grain.moved) {
     const std::int64_t at = layout_.index(g, node, 0);
     const Vector3 x = back(state.position(g, node));
-    const Bounds& bounds = grain.grid.bounds();
-    if (!((x - bounds.low).minCoeff() >= -bounds_margin && (bounds.high - x).minCoeff() >= -bounds_margin)) {
+    if (!allowed.contains(x)) {
       return false;
     }
     for (int c = 0; c < 3; ++c) {

@@ -38,14 +38,6 @@ ForceField::ForceField(const Packing& packing, const LaneLayout& layout, const M
 
 namespace {
 
-template <class Real> auto touch_kernel(const kernels::KernelTable& table) {
-  if constexpr (std::is_same_v<Real, float>) {
-    return table.mixed.add_touches;
-  } else {
-    return table.precise.add_touches;
-  }
-}
-
 constexpr double no_contact_r2 = 1e300;
 
 /// Nodes whose drift and copies for the contact pass share a visit to the cache.
@@ -74,14 +66,16 @@ void ForceField::contacts_between(ContactPair& pair, const Box& box, const Evalu
   pair.touches.assign(touches.begin(), touches.begin() + n_touching);
 }
 
-template <class Real> void ForceField::add_contacts(int grain, Real* f, bool with_sums) {
+template <class Coordinate, class Real>
+void ForceField::add_contacts(int grain, const kernels::LaneKernels<Coordinate, Real>& lane_kernels, Real* f,
+                              bool with_sums) {
   kernels::ContactSums& sums = contact_sums_[grain];
   sums = {};
   sums.smallest_r2 = no_contact_r2;
   for (const ContactSide& side : contact_list_.sides(grain)) {
     const ContactPair& pair = contact_list_.pairs()[side.pair];
-    (*touch_kernel<Real>(table_))(pair.touches.data(), static_cast<std::int64_t>(pair.touches.size()), side.sign, f,
-                                  layout_.stride(grain));
+    lane_kernels.add_touches(pair.touches.data(), static_cast<std::int64_t>(pair.touches.size()), side.sign, f,
+                             layout_.stride(grain));
     if (with_sums && !pair.touches.empty()) {
       for (int c = 0; c < 6; ++c) {
         sums.virial[c] += 0.5 * pair.sums.virial[c];
@@ -118,6 +112,7 @@ void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>&
   thread_local AlignedArray<Real> volume, force;
   const Block& block = layout_.blocks()[b];
   const NetworkData& network = networks_[block.template_index];
+  const kernels::LaneKernels<Coordinate, Real>& lane_kernels = kernels_of(table_, lanes);
   const Matrix3 residual = what.residual_rate * box.h_inverse();
   const Vector3 residual_x = residual.row(0);
   const kernels::BondParameters parameters = {material_.k,
@@ -131,11 +126,11 @@ void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>&
     volume.assign(n_lane_nodes, 0);
   }
   force.assign(3 * n_lane_nodes, 0);
-  double residual_shift[kernels::max_lanes] = {};
+  double residual_shift[max_lanes] = {};
   for (int lane = 0; lane < block.n_lanes; ++lane) {
     const int grain = block.grain[lane];
     if (grain >= 0) {
-      add_contacts(grain, force.data() + lane, what.virial != Virial::none);
+      add_contacts(grain, lane_kernels, force.data() + lane, what.virial != Virial::none);
       residual_shift[lane] = residual_x.dot(state.origin(grain) - box.origin());
     }
   }
@@ -157,7 +152,7 @@ void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>&
       image_sums = add_image_bonds(network, material_, box, what.residual_rate, block.many_body, arrays);
     }
   }
-  kernels_of(table_, lanes).bonds(network.view_as<Real>(), arrays, parameters, block.many_body, what.virial, sums);
+  lane_kernels.bonds(network.view_as<Real>(), arrays, parameters, block.many_body, what.virial, sums);
   if (what.keep_forces) {
     std::copy(force.begin(), force.end(), lanes.f.begin() + block.offset);
   }
@@ -200,8 +195,8 @@ void ForceField::collect(int grain, std::span<const std::int32_t> nodes, const L
 
 kernels::DriftResult ForceField::drift_block(int b, LaneState& state, kernels::Drift drift) {
   const Block& block = layout_.blocks()[b];
+  const Vector3 residual(drift.residual[0], drift.residual[1], drift.residual[2]);
   for (int lane = 0; lane < block.n_lanes; ++lane) {
-    const Vector3 residual(drift.residual[0], drift.residual[1], drift.residual[2]);
     drift.lane_shift[lane] =
         drift.residual_shift + (block.grain[lane] >= 0 ? residual.dot(state.origin(block.grain[lane])) : 0.0);
   }

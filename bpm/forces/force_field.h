@@ -95,7 +95,8 @@ private:
   kernels::DriftResult drift_block(int b, LaneState& state, kernels::Drift drift);
   template <class Real> double walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums);
   void contacts_between(ContactPair& pair, const Box& box, const Evaluation& what);
-  template <class Real> void add_contacts(int grain, Real* f, bool with_sums);
+  template <class Coordinate, class Real>
+  void add_contacts(int grain, const kernels::LaneKernels<Coordinate, Real>& lane_kernels, Real* f, bool with_sums);
   template <class Coordinate, class Real>
   void bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>& lanes, const Box& box, const Evaluation& what);
   void reduce_contacts();

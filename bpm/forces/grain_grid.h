@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/forces/bounds.h"
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/packing/box.h"
 
@@ -11,12 +12,6 @@
 #include <vector>
 
 namespace boba {
-
-/// Axis-aligned bounding box of a grain's nodes, d.
-struct Bounds {
-  Vector3 low = Vector3::Constant(1e300);
-  Vector3 high = Vector3::Constant(-1e300);
-};
 
 /// All nodes of one grain in cubic cells of edge `reach` over its bounds, sorted by cell with x running fastest, so
 /// that the cells of a row are one run of nodes. No assumption is made on which nodes are at the surface.
@@ -40,11 +35,7 @@ public:
   int inside(int coordinate, int axis) const { return std::clamp(coordinate, 0, n_cells_[axis] - 1); }
   /// False when none of the 27 cells around the one that holds x has a node, inserted ones included.
   bool near(const Vector3& x) const;
-  /// True when x is at most one cell outside the bounds.
-  bool holds(const Vector3& x) const {
-    return (x - bounds_.low).minCoeff() >= -reach_ && (bounds_.high - x).minCoeff() >= -reach_;
-  }
-  /// Adds a place where a node is seen too, which the grid holds. The sorted nodes stay as they are.
+  /// Adds a place where a node is seen too, at most one cell outside the bounds. The sorted nodes stay as they are.
   void insert(std::int32_t node, const Vector3& position);
   /// Calls visit(node, place) for every inserted place.
   template <class Visit> void for_each_inserted(Visit&& visit) const {

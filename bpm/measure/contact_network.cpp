@@ -20,8 +20,7 @@ std::vector<Bounds> bounds_of(const GrainNodes& grains) {
   std::vector<Bounds> bounds(grains.n_grains());
   for (int grain = 0; grain < grains.n_grains(); ++grain) {
     for (const Vector3& x : grains.nodes_of(grain)) {
-      bounds[grain].low = bounds[grain].low.cwiseMin(x);
-      bounds[grain].high = bounds[grain].high.cwiseMax(x);
+      bounds[grain].include(x);
     }
   }
   return bounds;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/packing/max_lanes.h"
 #include "bpm/packing/packing.h"
 
 #include <cstdint>
@@ -19,7 +20,6 @@ enum class Precision {
 constexpr int lanes_of_block(Precision precision) {
   return precision == Precision::full ? 8 : 16;
 }
-inline constexpr int max_lanes = 16;
 
 /// One block: up to `n_lanes` grains of one template that advance together.
 struct Block {

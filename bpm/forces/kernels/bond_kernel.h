@@ -101,7 +101,7 @@ template <Virial virial, class V> inline void add_to(Tensor<DoublesOf<V>>& sum, 
   }
 }
 
-template <class D> void store_tensor(const Tensor<D>& sum, double (*to)[boba::kernels::max_lanes], int lane) {
+template <class D> void store_tensor(const Tensor<D>& sum, double (*to)[boba::max_lanes], int lane) {
   for (int c = 0; c < 7; ++c) {
     store<D>(&to[c][lane], sum.c[c]);
   }

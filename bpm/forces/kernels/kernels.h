@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/packing/max_lanes.h"
+
 #include <compare>
 #include <cstdint>
 
@@ -9,9 +11,6 @@
 // function of a library is compiled for a machine that cannot run it.
 
 namespace boba::kernels {
-
-/// Most grains that a block holds.
-inline constexpr int max_lanes = 16;
 
 // Every kernel of the lane arrays exists for two ways to store them:
 //   double: positions, velocities and forces are doubles;
