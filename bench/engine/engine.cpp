@@ -49,6 +49,7 @@ void dense_shear(benchmark::State& state) {
   const ContactList::Counts& listed = stepper.forces().contact_list().counts();
   const double all_steps = static_cast<double>(after.steps);
   const double n_grains = stepper.layout().n_grains();
+  state.counters["steps_per_update"] = all_steps / static_cast<double>(listed.updates);
   state.counters["steps_per_note"] = all_steps * n_grains / static_cast<double>(listed.grains);
   state.counters["steps_per_pair_search"] = all_steps *
                                             static_cast<double>(stepper.forces().contact_list().pairs().size()) /

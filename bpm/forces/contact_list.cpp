@@ -60,6 +60,7 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
     }
     guaranteed = std::min(guaranteed, kept);
   }
+  ++counts_.updates;
   counts_.pairs += searched;
 #pragma omp parallel for schedule(dynamic, 1)
   for (int g = 0; g < layout_.n_grains(); ++g) {

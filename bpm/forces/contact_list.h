@@ -46,9 +46,10 @@ public:
   std::span<const std::int32_t> listed(int grain) const { return grains_[grain].listed; }
 
   std::int64_t n_candidates() const;
-  /// How often a grain's nodes were noted anew, a pair searched, and a single node looked up.
+  /// How often the list was brought up to date, a grain's nodes were noted anew, a pair searched, and a single node
+  /// looked up.
   struct Counts {
-    std::int64_t grains = 0, pairs = 0, nodes = 0;
+    std::int64_t updates = 0, grains = 0, pairs = 0, nodes = 0;
   };
   const Counts& counts() const { return counts_; }
   std::size_t bytes() const;

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/packing/aligned_array.h"
 #include "bpm/packing/lane_layout.h"
-
-#include <boost/align/aligned_allocator.hpp>
 
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 namespace boba {
-
-/// Array whose first element lies on a cache line.
-template <class T> using AlignedArray = std::vector<T, boost::alignment::aligned_allocator<T, 64>>;
 
 /// Positions, velocities and forces of all nodes in the lane layout.
 template <class Coordinate_, class Real_> struct LaneArrays {

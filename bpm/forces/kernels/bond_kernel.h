@@ -17,11 +17,11 @@ using boba::kernels::Virial;
 
 template <class V> struct Triple { V c[3]; };
 
-template <class V, class T> inline Triple<V> load3(const T* from, std::int64_t node, int stride) {
+template <class V, class T> inline Triple<V> load3(const T* from, std::int64_t node, std::int64_t stride) {
   const T* at = from + 3 * node * stride;
   return {{load<V>(at), load<V>(at + stride), load<V>(at + 2 * stride)}};
 }
-template <class V, class T> inline void store3(T* to, std::int64_t node, int stride, const Triple<V>& value) {
+template <class V, class T> inline void store3(T* to, std::int64_t node, std::int64_t stride, const Triple<V>& value) {
   T* at = to + 3 * node * stride;
   store<V>(at, value.c[0]);
   store<V>(at + stride, value.c[1]);
@@ -42,10 +42,11 @@ template <class V> inline V dot(const Triple<V>& a, const Triple<V>& b) {
 /// Adds r^3 of the bonds of the nodes [begin, end) to the volumes of both of their nodes. Pointers start at the first
 /// lane.
 template <class S, class Coordinate = typename S::Coordinate, class Real = typename S::Real>
-void node_volumes(const NetworkOf<Real>& network, const Coordinate* x, Real* volume, int stride, double quantum,
-                  std::int64_t begin, std::int64_t end) {
+void node_volumes(const NetworkOf<Real>& network, const Coordinate* x, Real* volume, double quantum, std::int64_t begin,
+                  std::int64_t end) {
   using V = typename S::V;
   using P = typename S::P;
+  constexpr std::int64_t stride = S::stride;
   const V q = splat<V>(quantum);
   for (std::int64_t i = begin; i < end; ++i) {
     const Triple<P> xi = load3<P>(x, i, stride);
@@ -65,7 +66,7 @@ void node_volumes(const NetworkOf<Real>& network, const Coordinate* x, Real* vol
 template <class Coordinate, class Real>
 void volumes_of_nodes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a) {
   for_lanes<Coordinate>(a.n_lanes, [&](int lane, auto storage) {
-    node_volumes<decltype(storage)>(network, a.x + lane, a.volume + lane, a.n_lanes, a.quantum, 0, network.n_nodes);
+    node_volumes<decltype(storage)>(network, a.x + lane, a.volume + lane, a.quantum, 0, network.n_nodes);
   });
 }
 
@@ -115,7 +116,7 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
                 int lane, LaneSums& sums) {
   using V = typename S::V;
   using P = typename S::P;
-  const int stride = a.n_lanes;
+  constexpr std::int64_t stride = S::stride;
   const Coordinate* x = a.x + lane;
   Real* v = a.v + lane;
   Real* f = a.f + lane;
@@ -134,7 +135,7 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
         const std::int64_t ahead = boba::kernels::volume_chunk;
         const std::int64_t end =
             network.reach[i] + ahead < network.n_nodes ? network.reach[i] + ahead : network.n_nodes;
-        node_volumes<S>(network, x, volume, stride, a.quantum, volumes_done, end);
+        node_volumes<S>(network, x, volume, a.quantum, volumes_done, end);
         volumes_done = end;
       }
     }

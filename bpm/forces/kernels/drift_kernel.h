@@ -36,10 +36,11 @@ inline std::uint64_t random_bits(std::uint64_t number) {
 /// node and component: however slow a drift, none of it is lost. (A sequence that only fills (0, 1) evenly will not do:
 /// velocities answer to the last rounding, and grains creep.)
 template <class S, bool mapped, class Coordinate = typename S::Coordinate, class Real = typename S::Real>
-void drift_lanes(Coordinate* x, const Real* v, int n_nodes, int stride, const Drift& drift, int lane,
-                 typename S::V& speed2, typename S::V& checksum) {
+void drift_lanes(Coordinate* x, const Real* v, int n_nodes, const Drift& drift, int lane, typename S::V& speed2,
+                 typename S::V& checksum) {
   using V = typename S::V;
   using P = typename S::P;
+  constexpr std::int64_t stride = S::stride;
   const V q = splat<V>(drift.quantum), dt = splat<V>(drift.dt);
   const V per_quantum = splat<V>(S::fixed_point ? 1.0 / drift.quantum : 1.0);
   V residual_shift = splat<V>(drift.residual_shift);
@@ -91,9 +92,9 @@ DriftResult drift_block(Coordinate* x, const Real* v, int n_nodes, int n_lanes, 
     using S = decltype(storage);
     typename S::V speed2{}, checksum{};
     if (drift.mapped) {
-      drift_lanes<S, true>(x, v, n_nodes, n_lanes, drift, lane, speed2, checksum);
+      drift_lanes<S, true>(x, v, n_nodes, drift, lane, speed2, checksum);
     } else {
-      drift_lanes<S, false>(x, v, n_nodes, n_lanes, drift, lane, speed2, checksum);
+      drift_lanes<S, false>(x, v, n_nodes, drift, lane, speed2, checksum);
     }
     const double largest = largest_of(speed2);
     result.largest_speed2 = largest > result.largest_speed2 ? largest : result.largest_speed2;

@@ -115,6 +115,13 @@ inline WideFloat multiply_add(WideFloat a, WideFloat b, WideFloat c) {
 #endif
 }
 template <class V> inline V subtract_product(V c, V a, V b) {
+#if defined(__AVX512F__) // the compiler would flip the sign in an instruction of its own
+  if constexpr (std::is_same_v<V, Wide>) {
+    return (Wide)_mm512_fnmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+  } else if constexpr (std::is_same_v<V, WideSingle>) {
+    return (WideSingle)_mm512_fnmadd_ps((__m512)a, (__m512)b, (__m512)c);
+  }
+#endif
   return multiply_add(-a, b, c);
 }
 
@@ -215,12 +222,12 @@ inline float cube_root(float x) {
 template <class V> inline bool any_outside(V x, double low, double high) {
 #if defined(__AVX512F__)
   if constexpr (std::is_same_v<V, Wide>) {
-    return _mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(low), _CMP_LT_OQ) |
-           _mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(high), _CMP_GT_OQ);
+    return !_kortestz_mask8_u8(_mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(low), _CMP_LT_OQ),
+                               _mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(high), _CMP_GT_OQ));
   }
   if constexpr (std::is_same_v<V, WideSingle>) {
-    return _mm512_cmp_ps_mask((__m512)x, _mm512_set1_ps(static_cast<float>(low)), _CMP_LT_OQ) |
-           _mm512_cmp_ps_mask((__m512)x, _mm512_set1_ps(static_cast<float>(high)), _CMP_GT_OQ);
+    return !_kortestz_mask16_u8(_mm512_cmp_ps_mask((__m512)x, _mm512_set1_ps(static_cast<float>(low)), _CMP_LT_OQ),
+                                _mm512_cmp_ps_mask((__m512)x, _mm512_set1_ps(static_cast<float>(high)), _CMP_GT_OQ));
   }
 #endif
   bool outside = false;
@@ -258,7 +265,7 @@ template <class V> inline V near_inverse_cube_root(V x) {
   return y;
 }
 
-/// x^(1/3) for floats: the polynomial and one step of the series up to h^2. Far from 1, where no grain in one piece is,
+/// x^(1/3) for floats: the polynomial and the series below up to h^2. Far from 1, where no grain in one piece is,
 /// lane by lane.
 template <class V> inline V cube_root_single(V x) {
   if (__builtin_expect(any_outside(x, 0.5, 2.0), 0)) {
@@ -269,9 +276,9 @@ template <class V> inline V cube_root_single(V x) {
     return result;
   }
   const V y = near_inverse_cube_root(x);
-  const V h = subtract_product(splat<V>(1.0), x * y, y * y);
-  const V z = multiply_add(y, h * multiply_add(h, splat<V>(2.0 / 9.0), splat<V>(1.0 / 3.0)), y);
-  return x * z * z;
+  const V xyy = x * y * y;
+  const V h = subtract_product(splat<V>(1.0), xyy, y);
+  return multiply_add(xyy, h * multiply_add(h, splat<V>(5.0 / 9.0), splat<V>(2.0 / 3.0)), xyy);
 }
 inline WideSingle cube_root(WideSingle x) {
   return cube_root_single(x);
@@ -280,25 +287,27 @@ inline WideFloat cube_root(WideFloat x) {
   return cube_root_single(x);
 }
 
-/// x^(1/3) to a few units in the last place. Volume ratios are near 1: there a polynomial gives x^(-1/3), and
-/// one step of the series above up to h^4 does the rest.
+/// x^(1/3) to a few units in the last place. Volume ratios are near 1: there a polynomial gives y = x^(-1/3) roughly, and
+/// x^(1/3) = x y^2 (1 - h)^(-2/3), h = 1 - x y^3, (1 - h)^(-2/3) = 1 + 2h/3 + 5h^2/9 + 40h^3/81 + 110h^4/243.
 inline Wide cube_root(Wide x) {
   if (__builtin_expect(any_outside(x, 0.5, 2.0), 0)) {
     return cube_root_of_any(x);
   }
   const Wide y = near_inverse_cube_root(x);
-  const Wide h = subtract_product(splat<Wide>(1.0), x * y, y * y);
-  Wide series = splat<Wide>(35.0 / 243.0);
-  for (const double c : {14.0 / 81.0, 2.0 / 9.0, 1.0 / 3.0}) {
+  const Wide xyy = x * y * y;
+  const Wide h = subtract_product(splat<Wide>(1.0), xyy, y);
+  Wide series = splat<Wide>(110.0 / 243.0);
+  for (const double c : {40.0 / 81.0, 5.0 / 9.0, 2.0 / 3.0}) {
     series = multiply_add(series, h, splat<Wide>(c));
   }
-  const Wide z = multiply_add(y, h * series, y);
-  return x * z * z;
+  return multiply_add(xyy, h * series, xyy);
 }
 
-/// How lane arrays are stored and computed with. V: the numbers of some lanes; P: as many coordinates.
-template <class V_, class Coordinate_> struct Storage {
+/// How lane arrays are stored and computed with. V: the numbers of some lanes; P: as many coordinates; stride: lanes of
+/// the block, a constant so that addresses cost no instructions.
+template <class V_, class Coordinate_, int stride_> struct Storage {
   using V = V_;
+  static constexpr std::int64_t stride = stride_;
   using Coordinate = Coordinate_;
   using Real = Element<V>;
   static constexpr bool fixed_point = std::is_same_v<Coordinate, std::int32_t>;
@@ -322,19 +331,26 @@ template <class V_, class Coordinate_> struct Storage {
   }
 };
 
-/// Calls visit(lane, Storage) for every run of lanes of a block that fills a register.
+/// Calls visit(lane, Storage) for every run of lanes that fills a register of V in a block of n lanes.
+template <class V, class Coordinate, int n, class Visit> inline void for_registers(Visit&& visit) {
+  for (int lane = 0; lane < n; lane += lanes_of<V>) {
+    visit(lane, Storage<V, Coordinate, n>{});
+  }
+}
+
+/// The same for a block whose number of lanes is known only now: 1 or 8, in mixed precision also 16.
 template <class Coordinate, class Visit> inline void for_lanes(int n_lanes, Visit&& visit) {
   constexpr bool mixed = std::is_same_v<Coordinate, std::int32_t>;
-  using Scalar = std::conditional_t<mixed, float, double>;
-  using Full = std::conditional_t<mixed, WideSingle, Wide>;
   if (n_lanes == 1) {
-    visit(0, Storage<Scalar, Coordinate>{});
-  } else if (n_lanes % lanes_of<Full> == 0) {
-    for (int lane = 0; lane < n_lanes; lane += lanes_of<Full>) {
-      visit(lane, Storage<Full, Coordinate>{});
-    }
-  } else if constexpr (mixed && native_lanes == 8) { // eight floats in half a register
-    visit(0, Storage<WideFloat, Coordinate>{});
+    for_registers<std::conditional_t<mixed, float, double>, Coordinate, 1>(visit);
+  } else if constexpr (!mixed) {
+    for_registers<Wide, Coordinate, 8>(visit);
+  } else if (n_lanes == 16) {
+    for_registers<WideSingle, Coordinate, 16>(visit);
+  } else if constexpr (native_lanes == 8) { // eight floats in half a register
+    for_registers<WideFloat, Coordinate, 8>(visit);
+  } else {
+    for_registers<WideSingle, Coordinate, 8>(visit);
   }
 }
 
