@@ -64,7 +64,10 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
   counts_.pairs += searched;
 #pragma omp parallel for schedule(dynamic, 1)
   for (int g = 0; g < layout_.n_grains(); ++g) {
-    list_nodes(g);
+    if (std::any_of(sides_[g].begin(), sides_[g].end(),
+                    [&](const ContactSide& side) { return pairs_[side.pair].changed; })) {
+      grains_[g].listed = nodes_in(g, &ContactPair::candidates);
+    }
   }
   for (ContactPair& pair : pairs_) {
     pair.changed = false;
@@ -262,25 +265,29 @@ void ContactList::finish(ContactPair& pair, const NetworkData& network, std::siz
   }
 }
 
-void ContactList::list_nodes(int g) {
-  const auto changed = [&](const ContactSide& side) { return pairs_[side.pair].changed; };
-  if (std::none_of(sides_[g].begin(), sides_[g].end(), changed)) {
-    return;
-  }
+/// Nodes of a grain in one of the lists of its pairs, ascending.
+std::vector<std::int32_t> ContactList::nodes_in(int g, std::vector<kernels::NodePair> ContactPair::*list) const {
   thread_local std::vector<std::uint64_t> in_list; // one bit a node
   in_list.assign((layout_.n_nodes(g) + 63) / 64, 0);
   for (const ContactSide& side : sides_[g]) {
-    for (const kernels::NodePair& nodes : pairs_[side.pair].candidates) {
+    for (const kernels::NodePair& nodes : pairs_[side.pair].*list) {
       const std::int32_t node = side.sign > 0.0 ? nodes.i : nodes.j;
       in_list[node / 64] |= std::uint64_t{1} << (node % 64);
     }
   }
-  std::vector<std::int32_t>& listed = grains_[g].listed;
-  listed.clear();
+  std::vector<std::int32_t> nodes;
   for (std::size_t word = 0; word < in_list.size(); ++word) {
     for (std::uint64_t left = in_list[word]; left != 0; left &= left - 1) {
-      listed.push_back(static_cast<std::int32_t>(64 * word) + std::countr_zero(left));
+      nodes.push_back(static_cast<std::int32_t>(64 * word) + std::countr_zero(left));
     }
+  }
+  return nodes;
+}
+
+void ContactList::list_near() {
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int g = 0; g < layout_.n_grains(); ++g) {
+    grains_[g].near = nodes_in(g, &ContactPair::near);
   }
 }
 
@@ -295,10 +302,11 @@ std::int64_t ContactList::n_candidates() const {
 std::size_t ContactList::bytes() const {
   std::size_t bytes = place_.capacity() * sizeof(float);
   for (const TrackedGrain& grain : grains_) {
-    bytes += grain.grid.bytes() + grain.listed.capacity() * sizeof(std::int32_t);
+    bytes += grain.grid.bytes() + (grain.listed.capacity() + grain.near.capacity()) * sizeof(std::int32_t);
   }
   for (const ContactPair& pair : pairs_) {
-    bytes += pair.candidates.capacity() * sizeof(kernels::NodePair) + pair.touches.capacity() * sizeof(kernels::Touch);
+    bytes += (pair.candidates.capacity() + pair.near.capacity()) * sizeof(kernels::NodePair) +
+             pair.touches.capacity() * sizeof(kernels::Touch);
   }
   return bytes;
 }

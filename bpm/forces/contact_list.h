@@ -44,6 +44,12 @@ public:
   std::span<const ContactSide> sides(int grain) const { return sides_[grain]; }
   /// Nodes of a grain that are in any candidate, ascending.
   std::span<const std::int32_t> listed(int grain) const { return grains_[grain].listed; }
+  /// Distance above which no two nodes can come to touch before the next update, listed or not, d.
+  double safe_distance() const { return guaranteed_; }
+  /// Nodes of a grain that are in any pair's near candidates, ascending; known after list_near.
+  std::span<const std::int32_t> near(int grain) const { return grains_[grain].near; }
+  /// Lists the nodes of the near candidates, once they have been found after an update.
+  void list_near();
 
   std::int64_t n_candidates() const;
   /// How often the list was brought up to date, a grain's nodes were noted anew, a pair searched, and a single node
@@ -64,7 +70,7 @@ private:
     std::vector<std::int32_t> moved; ///< nodes with a new place since the pairs were last brought up to date
     int n_moved = 0;                 ///< since all were noted
     bool anew = false;               ///< all were noted since the pairs were last brought up to date
-    std::vector<std::int32_t> listed;
+    std::vector<std::int32_t> listed, near;
   };
   using Networks = std::vector<const NetworkData*>;
 
@@ -93,7 +99,7 @@ private:
   void add_moved_between(ContactPair& pair) const;
   static void finish(ContactPair& pair, const NetworkData& network, std::size_t sorted);
   double guarantee(const ContactPair& pair, const Box& box) const;
-  void list_nodes(int grain);
+  std::vector<std::int32_t> nodes_in(int grain, std::vector<kernels::NodePair> ContactPair::*list) const;
   GrainFrame second_frame(const ContactPair& pair, const Box& box) const;
 
   // contact_tracking.cpp: grains

@@ -16,6 +16,7 @@ struct ContactPair {
   int a = 0, b = 0; ///< a <= b; image > 0 when a grain meets its own image
   ImageVector image;
   std::vector<kernels::NodePair> candidates;
+  std::vector<kernels::NodePair> near; ///< those that may touch before the next update of the list
 
   bool searched = false;
   bool changed = true;         ///< since the grains last listed their nodes

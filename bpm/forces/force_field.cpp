@@ -45,24 +45,39 @@ constexpr int drift_chunk = 32;
 
 } // namespace
 
-void ForceField::contacts_between(ContactPair& pair, const Box& box, const Evaluation& what) {
+kernels::ContactCandidates ForceField::seen_by_kernels(const ContactPair& pair,
+                                                       const std::vector<kernels::NodePair>& pairs, const Box& box,
+                                                       const Matrix3& residual_rate) const {
   const Vector3 n(pair.image.a, pair.image.b, pair.image.c);
-  const Vector3 shift = box.h() * n, velocity = what.residual_rate * n;
-  const kernels::ContactCandidates candidates = {pair.candidates.data(),
-                                                 static_cast<std::int64_t>(pair.candidates.size()),
-                                                 contact_nodes_.get() + first_node_[pair.a],
-                                                 contact_nodes_.get() + first_node_[pair.b],
-                                                 {shift[0], shift[1], shift[2]},
-                                                 {velocity[0], velocity[1], velocity[2]}};
+  const Vector3 shift = box.h() * n, velocity = residual_rate * n;
+  return {pairs.data(),
+          static_cast<std::int64_t>(pairs.size()),
+          contact_nodes_.get() + first_node_[pair.a],
+          contact_nodes_.get() + first_node_[pair.b],
+          {shift[0], shift[1], shift[2]},
+          {velocity[0], velocity[1], velocity[2]}};
+}
+
+void ForceField::find_near(ContactPair& pair, const Box& box) {
+  const double safe = contact_list_.safe_distance();
+  pair.near.resize(pair.candidates.size() + 1);
+  pair.near.resize(table_.near_candidates(seen_by_kernels(pair, pair.candidates, box, Matrix3::Zero()), safe * safe,
+                                          pair.near.data()));
+}
+
+void ForceField::contacts_between(ContactPair& pair, const Box& box, const Evaluation& what) {
   const kernels::ContactParameters parameters = {material_.k, material_.k3, material_.gamma, material_.diameter};
+  thread_local std::vector<kernels::Touch> touches;
+  thread_local std::vector<kernels::ContactNode> rows;
+  const auto room = static_cast<std::size_t>(kernels::touch_room(static_cast<std::int64_t>(pair.near.size())));
+  if (touches.size() < room) {
+    touches.resize(room);
+    rows.resize(room);
+  }
   pair.sums = {};
   pair.sums.smallest_r2 = no_contact_r2;
-  thread_local std::vector<kernels::Touch> touches;
-  if (touches.size() < pair.candidates.size()) {
-    touches.resize(pair.candidates.size());
-  }
-  const std::int64_t n_touching =
-      table_.contacts(candidates, parameters, touches.data(), what.virial != Virial::none, pair.sums);
+  const std::int64_t n_touching = table_.contacts(seen_by_kernels(pair, pair.near, box, what.residual_rate), parameters,
+                                                  rows.data(), touches.data(), pair.sums);
   pair.touches.assign(touches.begin(), touches.begin() + n_touching);
 }
 
@@ -215,12 +230,12 @@ kernels::DriftResult ForceField::drift_block(int b, LaneState& state, kernels::D
     for (int lane = 0; lane < block.n_lanes; ++lane) {
       const int grain = block.grain[lane];
       if (grain >= 0) {
-        const std::span<const std::int32_t> listed = contact_list_.listed(grain);
+        const std::span<const std::int32_t> near = contact_list_.near(grain);
         const std::size_t from = collected[lane];
-        while (collected[lane] < listed.size() && listed[collected[lane]] < end) {
+        while (collected[lane] < near.size() && near[collected[lane]] < end) {
           ++collected[lane];
         }
-        collect(grain, listed.subspan(from, collected[lane] - from), state);
+        collect(grain, near.subspan(from, collected[lane] - from), state);
       }
     }
   }
@@ -245,9 +260,22 @@ void ForceField::prepare_contacts(const LaneState& state, const Box& box) {
   if (collected_ && !changed) {
     return;
   }
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int b = 0; b < static_cast<int>(layout_.blocks().size()); ++b) {
-    collect(b, state);
+  std::vector<ContactPair>& pairs = contact_list_.pairs();
+#pragma omp parallel
+  {
+#pragma omp for schedule(dynamic, 1)
+    for (int b = 0; b < static_cast<int>(layout_.blocks().size()); ++b) {
+      collect(b, state);
+    }
+    if (changed) {
+#pragma omp for schedule(dynamic, 4)
+      for (int p = 0; p < static_cast<int>(pairs.size()); ++p) {
+        find_near(pairs[p], box);
+      }
+    }
+  }
+  if (changed) {
+    contact_list_.list_near();
   }
 }
 

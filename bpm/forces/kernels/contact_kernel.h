@@ -3,9 +3,10 @@
 #pragma once
 
 #include "bpm/forces/kernels/kernels.h"
+#include "bpm/forces/kernels/lanes.h"
 #include "bpm/laws/contact.h"
 
-#include <cmath>
+#include <cstdint>
 #include <type_traits>
 
 namespace {
@@ -31,6 +32,7 @@ void collect_nodes(const std::int32_t* nodes, std::int64_t n, const Coordinate* 
       }
       node.v[c] = v[from + c * stride];
     }
+    node.filling[0] = node.filling[1] = 0.0;
   }
 }
 
@@ -38,63 +40,98 @@ void collect_nodes(const std::int32_t* nodes, std::int64_t n, const Coordinate* 
 /// finds it.
 constexpr std::int64_t prefetch_distance = 16;
 
-/// Writes down the candidates that touch, in order and without a branch, and returns their number. The squared distance
-/// waits in force[0].
-inline std::int64_t touching_pairs(const ContactCandidates& c, double diameter, Touch* __restrict touches) {
-  const double reach2 = diameter * diameter;
-  const std::int64_t last = c.n - 1;
+inline void prefetch_ahead(const ContactCandidates& c, std::int64_t e) {
+  __builtin_prefetch(&c.second[c.pairs[e + prefetch_distance < c.n ? e + prefetch_distance : c.n - 1].j]);
+}
+
+/// Position and velocity of a contact node in one vector: x y z vx vy vz 0 0.
+using NodeRow = Vector<double, 8>;
+
+/// Writes down the candidates closer than sqrt(reach2), in order and without a branch, and returns their number.
+std::int64_t near_candidates(const ContactCandidates& c, double reach2, NodePair* near) {
   std::int64_t n = 0;
   for (std::int64_t e = 0; e < c.n; ++e) {
-    __builtin_prefetch(&c.second[c.pairs[e + prefetch_distance < last ? e + prefetch_distance : last].j]);
+    prefetch_ahead(c, e);
     const NodePair pair = c.pairs[e];
     const double* a = c.first[pair.i].x;
     const double* b = c.second[pair.j].x;
     const double dx = a[0] - b[0] - c.shift[0];
     const double dy = a[1] - b[1] - c.shift[1];
     const double dz = a[2] - b[2] - c.shift[2];
-    const double r2 = dx * dx + dy * dy + dz * dz;
-    touches[n].nodes = pair;
-    touches[n].force[0] = r2;
-    n += r2 < reach2;
+    near[n] = pair;
+    n += dx * dx + dy * dy + dz * dz < reach2;
   }
   return n;
 }
 
-/// Replaces the squared distance by the force on node i.
-inline void evaluate_touch(const ContactCandidates& candidates, const ContactParameters& p, Touch& touch,
-                           bool with_sums, ContactSums& sums) {
-  const ContactNode& a = candidates.first[touch.nodes.i];
-  const ContactNode& b = candidates.second[touch.nodes.j];
-  const double r2 = touch.force[0];
-  double d[3], approach = 0.0;
-  for (int c = 0; c < 3; ++c) {
-    d[c] = a.x[c] - b.x[c] - candidates.shift[c];
-    approach += d[c] * (a.v[c] - b.v[c] - candidates.shift_velocity[c]);
+/// Writes down the candidates that touch, and x_i - x_j, v_i - v_j of each as a row, in order and without a branch.
+inline std::int64_t touching_rows(const ContactCandidates& c, double diameter, ContactNode* rows, Touch* touches) {
+  const NodeRow shift = {c.shift[0],          c.shift[1],          c.shift[2], c.shift_velocity[0],
+                         c.shift_velocity[1], c.shift_velocity[2], 0.0,        0.0};
+  const double reach2 = diameter * diameter;
+  std::int64_t n = 0;
+  for (std::int64_t e = 0; e < c.n; ++e) {
+    prefetch_ahead(c, e);
+    const NodePair pair = c.pairs[e];
+    const NodeRow d = load<NodeRow>(c.first[pair.i].x) - load<NodeRow>(c.second[pair.j].x) - shift;
+    store<NodeRow>(rows[n].x, d);
+    touches[n].nodes = pair;
+    n += d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach2;
   }
-  const double r = std::sqrt(r2), inverse_r = 1.0 / r;
-  const double s = boba::contact_force(p.k, p.k3, p.gamma, p.diameter, r, approach * inverse_r) * inverse_r;
-  for (int c = 0; c < 3; ++c) {
-    touch.force[c] = s * d[c];
-  }
-  if (with_sums) {
-    sums.virial[0] += s * d[0] * d[0];
-    sums.virial[1] += s * d[1] * d[1];
-    sums.virial[2] += s * d[2] * d[2];
-    sums.virial[3] += s * d[0] * d[1];
-    sums.virial[4] += s * d[0] * d[2];
-    sums.virial[5] += s * d[1] * d[2];
-    sums.smallest_r2 = r2 < sums.smallest_r2 ? r2 : sums.smallest_r2;
-    sums.potential += boba::contact_energy(p.k, p.k3, p.diameter, r);
-  }
+  return n;
 }
 
-std::int64_t contact_forces(const ContactCandidates& candidates, const ContactParameters& p, Touch* touches,
-                            bool with_sums, ContactSums& sums) {
-  const std::int64_t n = touching_pairs(candidates, p.diameter, touches);
-  for (std::int64_t t = 0; t < n; ++t) {
-    evaluate_touch(candidates, p, touches[t], with_sums, sums);
+/// Forces of as many touches as a register holds, and their share of the sums.
+struct TouchSums {
+  Wide virial[6]{}, smallest_r2, potential{};
+};
+inline void evaluate_touches(const ContactNode* rows, const ContactParameters& p, Touch* touches, TouchSums& sums) {
+  Wide d[3], approach{};
+  for (int l = 0; l < native_lanes; ++l) {
+    for (int c = 0; c < 3; ++c) {
+      d[c][l] = rows[l].x[c];
+    }
+    approach[l] = rows[l].x[0] * rows[l].v[0] + rows[l].x[1] * rows[l].v[1] + rows[l].x[2] * rows[l].v[2];
   }
-  sums.n_touching += n;
+  const Wide r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  const Wide inverse_r = inverse_sqrt(r2), r = r2 * inverse_r;
+  const Wide s = boba::contact_force(p.k, p.k3, p.gamma, p.diameter, r, approach * inverse_r) * inverse_r;
+  const Wide force[3] = {s * d[0], s * d[1], s * d[2]};
+  for (int l = 0; l < native_lanes; ++l) {
+    for (int c = 0; c < 3; ++c) {
+      touches[l].force[c] = force[c][l];
+    }
+  }
+  const Wide terms[6] = {force[0] * d[0], force[1] * d[1], force[2] * d[2],
+                         force[0] * d[1], force[0] * d[2], force[1] * d[2]};
+  for (int c = 0; c < 6; ++c) {
+    sums.virial[c] += terms[c];
+  }
+  sums.smallest_r2 = r2 < sums.smallest_r2 ? r2 : sums.smallest_r2;
+  sums.potential += boba::contact_energy(p.k, p.k3, p.diameter, r);
+}
+
+/// The sums follow from the touches alone, whatever other candidates there were.
+std::int64_t contact_forces(const ContactCandidates& candidates, const ContactParameters& p, ContactNode* rows,
+                            Touch* touches, ContactSums& sums) {
+  const std::int64_t n = touching_rows(candidates, p.diameter, rows, touches);
+  if (n == 0) {
+    return 0;
+  }
+  for (std::int64_t t = n; t % native_lanes != 0; ++t) { // nodes that just do not touch fill the last register
+    rows[t] = {{p.diameter, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0}};
+  }
+  TouchSums wide;
+  wide.smallest_r2 = splat<Wide>(p.diameter * p.diameter);
+  for (std::int64_t t = 0; t < n; t += native_lanes) {
+    evaluate_touches(rows + t, p, touches + t, wide);
+  }
+  for (int c = 0; c < 6; ++c) {
+    sums.virial[c] = sum_of(wide.virial[c]);
+  }
+  sums.smallest_r2 = -largest_of(-wide.smallest_r2);
+  sums.potential = sum_of(wide.potential);
+  sums.n_touching = n;
   return n;
 }
 

@@ -20,6 +20,7 @@ extern const KernelTable BOBA_KERNEL_TABLE = {
     {&volumes_of_nodes<std::int32_t, float>, &bond_forces<std::int32_t, float>, &drift_block<std::int32_t, float>,
      &collect_nodes<std::int32_t, float>, &add_touches<float>, &fit_frames<std::int32_t>,
      &frame_residuals<std::int32_t>},
+    &near_candidates,
     &contact_forces,
     &near_places};
 

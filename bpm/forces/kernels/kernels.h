@@ -89,6 +89,7 @@ struct DriftResult {
 /// in the lane layout they are spread over six.
 struct alignas(64) ContactNode {
   double x[3], v[3];
+  double filling[2]; ///< 0: loops read the whole line as one vector
 };
 
 /// A candidate contact: a node of each of two grains.
@@ -114,6 +115,11 @@ struct ContactCandidates {
 struct ContactParameters {
   double k, k3, gamma, diameter;
 };
+
+/// Touches and rows that a loop over n candidates may write: one beyond, rounded up to full registers.
+inline constexpr std::int64_t touch_room(std::int64_t n_candidates) {
+  return n_candidates + 16;
+}
 
 /// Over the contacts of one pair of grains; both have half of the virial.
 struct ContactSums {
@@ -173,8 +179,12 @@ struct KernelTable {
   const char* name; ///< "avx512", "avx2" or "baseline"
   LaneKernels<double, double> precise;
   LaneKernels<std::int32_t, float> mixed;
-  /// Writes the contacts among the candidates into `touches` (room for all of them) and returns their number.
-  std::int64_t (*contacts)(const ContactCandidates&, const ContactParameters&, Touch* touches, bool with_sums,
+  /// Writes the candidates closer than sqrt(reach2) into `near` (room for one more than all of them), in their order,
+  /// and returns their number.
+  std::int64_t (*near_candidates)(const ContactCandidates&, double reach2, NodePair* near);
+  /// Writes the contacts among the candidates into `touches` and returns their number. `rows` is scratch; both have
+  /// room for touch_room(candidates).
+  std::int64_t (*contacts)(const ContactCandidates&, const ContactParameters&, ContactNode* rows, Touch* touches,
                            ContactSums&);
   /// Writes the places in [begin, end) closer than sqrt(reach2) to p into `found`, ascending, and returns their number.
   /// `found` has room for end - begin + 8 numbers.
