@@ -240,10 +240,12 @@ void ContactList::add_moved_between(ContactPair& pair) const {
       }
     }
   };
-  look_up(pair.a, pair.frame_a, pair.b, pair.frame_b, pair.bounds_b,
-          [&](std::int32_t i, std::int32_t j) { pair.candidates.push_back({i, j}); });
-  look_up(pair.b, pair.frame_b, pair.a, pair.frame_a, pair.bounds_a,
-          [&](std::int32_t j, std::int32_t i) { pair.candidates.push_back({i, j}); });
+  look_up(pair.a, pair.frame_a, pair.b, pair.frame_b, pair.bounds_b, [&](std::int32_t i, std::int32_t j) {
+    pair.candidates.push_back({i, j});
+  });
+  look_up(pair.b, pair.frame_b, pair.a, pair.frame_a, pair.bounds_a, [&](std::int32_t j, std::int32_t i) {
+    pair.candidates.push_back({i, j});
+  });
 }
 
 /// Sorts the candidates from `sorted` on into those before, and strikes out what is bonded or stands twice.

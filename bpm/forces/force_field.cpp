@@ -4,11 +4,10 @@
 #include "bpm/forces/image_bonds.h"
 #include "bpm/forces/lane_kernels.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <omp.h>
 #include <stdexcept>
 #include <type_traits>
 

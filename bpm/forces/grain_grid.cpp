@@ -4,8 +4,8 @@
 namespace boba {
 
 GrainGrid::GrainGrid(std::span<const Vector3> nodes, const Bounds& bounds, double reach)
-    : bounds_(bounds), reach_(reach), inverse_cell_(1.0 / reach), node_(nodes.size()),
-      x_(nodes.size()), y_(nodes.size()), z_(nodes.size()) {
+    : bounds_(bounds), reach_(reach), inverse_cell_(1.0 / reach), node_(nodes.size()), x_(nodes.size()),
+      y_(nodes.size()), z_(nodes.size()) {
   std::int64_t n = 1, n_ringed = 1;
   for (int axis = 0; axis < 3; ++axis) {
     n_cells_[axis] = 1 + static_cast<int>((bounds.high[axis] - bounds.low[axis]) * inverse_cell_);

@@ -36,9 +36,13 @@ template <class T> struct LaneAllocator {
 #endif
     return static_cast<T*>(at);
   }
-  void deallocate(T* at, std::size_t) { boost::alignment::aligned_free(at); }
+  void deallocate(T* at, std::size_t) {
+    boost::alignment::aligned_free(at);
+  }
 
-  template <class U> bool operator==(const LaneAllocator<U>&) const { return true; }
+  template <class U> bool operator==(const LaneAllocator<U>&) const {
+    return true;
+  }
 
 private:
   static constexpr std::size_t cache_line = 64, large_page = std::size_t{2} << 20;

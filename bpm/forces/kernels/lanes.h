@@ -32,7 +32,6 @@ template <class T, int N> using Vector = typename VectorOf<T, N>::Type;
 /// The widest register of doubles of this instruction set, that of floats, and as many floats as there are doubles.
 using Wide = Vector<double, native_lanes>;
 using WideFloat = Vector<float, native_lanes>;
-using WideInt = Vector<std::int32_t, native_lanes>;
 using WideSingle = Vector<float, 2 * native_lanes>;
 
 template <class V> constexpr int lanes_of = sizeof(V) / sizeof(std::declval<V>()[0]);
@@ -237,23 +236,6 @@ template <class V> inline bool any_outside(V x, double low, double high) {
   return outside;
 }
 
-/// x^(1/3) for 1e-30 < x < 1e30, without division: y = x^(-1/3) from the exponent bits, two steps of the series
-/// (1 - h)^(-1/3) = 1 + h/3 + 2h^2/9 + 14h^3/81, h = 1 - x y^3 (the first in float), then x y^2.
-inline Wide cube_root_of_any(Wide x) {
-  const WideFloat xf = __builtin_convertvector(x, WideFloat);
-  // Dividing the float's bits by -3 divides its logarithm by -3; the constant makes |h| <= 0.102 over all x.
-  const WideFloat bits = __builtin_convertvector((WideInt)xf, WideFloat);
-  WideFloat yf = (WideFloat) __builtin_convertvector(1419900160.0f - bits * (1.0f / 3.0f), WideInt);
-  const WideFloat hf = 1.0f - xf * yf * yf * yf;
-  yf = yf + yf * (hf * (1.0f / 3.0f + hf * (2.0f / 9.0f + hf * (14.0f / 81.0f))));
-  const Wide y = __builtin_convertvector(yf, Wide);
-  const Wide h = subtract_product(splat<Wide>(1.0), x * y, y * y);
-  const Wide series =
-      multiply_add(h, multiply_add(h, splat<Wide>(14.0 / 81.0), splat<Wide>(2.0 / 9.0)), splat<Wide>(1.0 / 3.0));
-  const Wide z = multiply_add(y, h * series, y);
-  return x * z * z;
-}
-
 /// x^(-1/3) to 3.3e-4 over [1/2, 2]: the polynomial of degree 5 with the least relative error.
 template <class V> inline V near_inverse_cube_root(V x) {
   const V t = x - static_cast<Element<V>>(1.0);
@@ -265,42 +247,45 @@ template <class V> inline V near_inverse_cube_root(V x) {
   return y;
 }
 
-/// x^(1/3) for floats: the polynomial and the series below up to h^2. Far from 1, where no grain in one piece is,
-/// lane by lane.
-template <class V> inline V cube_root_single(V x) {
-  if (__builtin_expect(any_outside(x, 0.5, 2.0), 0)) {
-    V result{};
-    for (int l = 0; l < lanes_of<V>; ++l) {
-      result[l] = std::cbrt(x[l]);
+/// The library's root where x is outside [1/2, 2], and `root` elsewhere. Lane by lane: what one grain computes must not
+/// depend on which others share its register.
+template <class V> __attribute__((noinline, cold)) V with_far_lanes(V x, V root) {
+  for (int l = 0; l < lanes_of<V>; ++l) {
+    if (x[l] < 0.5 || x[l] > 2.0) {
+      root[l] = std::cbrt(x[l]);
     }
-    return result;
   }
+  return root;
+}
+
+/// x^(1/3) to about a unit in the last place. Volume ratios are near 1: there a polynomial gives y = x^(-1/3) roughly,
+/// and
+///     x^(1/3) = x y^2 (1 - h)^(-2/3),  h = 1 - x y^3,  (1 - h)^(-2/3) = 1 + 2h/3 + 5h^2/9 + 40h^3/81 + 110h^4/243 +
+///     ...
+/// up to h^2 for floats and h^4 for doubles.
+template <class V> inline V near_cube_root(V x, std::initializer_list<double> series) {
   const V y = near_inverse_cube_root(x);
   const V xyy = x * y * y;
   const V h = subtract_product(splat<V>(1.0), xyy, y);
-  return multiply_add(xyy, h * multiply_add(h, splat<V>(5.0 / 9.0), splat<V>(2.0 / 3.0)), xyy);
+  V sum = splat<V>(*series.begin());
+  for (const double* c = series.begin() + 1; c != series.end(); ++c) {
+    sum = multiply_add(sum, h, splat<V>(*c));
+  }
+  return multiply_add(xyy, h * sum, xyy);
+}
+inline Wide cube_root(Wide x) {
+  const Wide root = near_cube_root(x, {110.0 / 243.0, 40.0 / 81.0, 5.0 / 9.0, 2.0 / 3.0});
+  return __builtin_expect(any_outside(x, 0.5, 2.0), 0) ? with_far_lanes(x, root) : root;
+}
+template <class V> inline V cube_root_single(V x) {
+  const V root = near_cube_root(x, {5.0 / 9.0, 2.0 / 3.0});
+  return __builtin_expect(any_outside(x, 0.5, 2.0), 0) ? with_far_lanes(x, root) : root;
 }
 inline WideSingle cube_root(WideSingle x) {
   return cube_root_single(x);
 }
 inline WideFloat cube_root(WideFloat x) {
   return cube_root_single(x);
-}
-
-/// x^(1/3) to a few units in the last place. Volume ratios are near 1: there a polynomial gives y = x^(-1/3) roughly, and
-/// x^(1/3) = x y^2 (1 - h)^(-2/3), h = 1 - x y^3, (1 - h)^(-2/3) = 1 + 2h/3 + 5h^2/9 + 40h^3/81 + 110h^4/243.
-inline Wide cube_root(Wide x) {
-  if (__builtin_expect(any_outside(x, 0.5, 2.0), 0)) {
-    return cube_root_of_any(x);
-  }
-  const Wide y = near_inverse_cube_root(x);
-  const Wide xyy = x * y * y;
-  const Wide h = subtract_product(splat<Wide>(1.0), xyy, y);
-  Wide series = splat<Wide>(110.0 / 243.0);
-  for (const double c : {40.0 / 81.0, 5.0 / 9.0, 2.0 / 3.0}) {
-    series = multiply_add(series, h, splat<Wide>(c));
-  }
-  return multiply_add(xyy, h * series, xyy);
 }
 
 /// How lane arrays are stored and computed with. V: the numbers of some lanes; P: as many coordinates; stride: lanes of

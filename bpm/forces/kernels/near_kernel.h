@@ -11,8 +11,8 @@ using boba::kernels::SortedNodes;
 
 #if !defined(__AVX512F__)
 /// Branch-free: every place is written, and the count moves on only past those that are near.
-std::int32_t near_places(const SortedNodes& nodes, std::int32_t begin, std::int32_t end, const double* p,
-                                      double reach2, std::int32_t* found) {
+std::int32_t near_places(const SortedNodes& nodes, std::int32_t begin, std::int32_t end, const double* p, double reach2,
+                         std::int32_t* found) {
   std::int32_t n = 0;
   for (std::int32_t place = begin; place < end; ++place) {
     const double dx = nodes.x[place] - p[0], dy = nodes.y[place] - p[1], dz = nodes.z[place] - p[2];
@@ -33,7 +33,8 @@ std::int32_t near_places(const SortedNodes& nodes, std::int32_t begin, std::int3
     const __m512d dx = _mm512_sub_pd(_mm512_maskz_loadu_pd(inside, nodes.x + place), px);
     const __m512d dy = _mm512_sub_pd(_mm512_maskz_loadu_pd(inside, nodes.y + place), py);
     const __m512d dz = _mm512_sub_pd(_mm512_maskz_loadu_pd(inside, nodes.z + place), pz);
-    const __m512d r2 = _mm512_add_pd(_mm512_add_pd(_mm512_mul_pd(dx, dx), _mm512_mul_pd(dy, dy)), _mm512_mul_pd(dz, dz));
+    const __m512d r2 =
+        _mm512_add_pd(_mm512_add_pd(_mm512_mul_pd(dx, dx), _mm512_mul_pd(dy, dy)), _mm512_mul_pd(dz, dz));
     const __mmask8 hit = _mm512_mask_cmp_pd_mask(inside, r2, limit, _CMP_LT_OQ);
     const __m256i places = _mm256_add_epi32(_mm256_set1_epi32(place), first_eight);
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(found + n), _mm256_maskz_compress_epi32(hit, places));

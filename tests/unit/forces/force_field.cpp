@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The lane kernels and the contact search against plain loops over all pairs in long double.
 #include "bpm/forces/force_field.h"
+
 #include "tests/support/plain_forces.h"
 #include "tests/support/small_packings.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 
 namespace boba::test {
 namespace {
@@ -73,9 +73,9 @@ TEST(ForceField, AllAlphasInFullAndRaggedBlocks) {
   }
 }
 
-// A bond's force in floats: r, up to 1.5 d long, is off by five units in the 24th bit (three from the sum of squares, two from
-// the root), r / r0 and the cube root by as much, each times k + |alpha|; the product and the sum add to that: eight units. A
-// node has up to 16 bonds.
+// A bond's force in floats: r, up to 1.5 d long, is off by five units in the 24th bit (three from the sum of squares,
+// two from the root), r / r0 and the cube root by as much, each times k + |alpha|; the product and the sum add to that:
+// eight units. A node has up to 16 bonds.
 TEST(ForceField, MixedPrecisionIsAsGoodAsAFloat) {
   for (const double alpha : {-0.8, 0.0, 2.0, 12.0}) {
     for (const int n_grains : {1, 2, 7, 8, 9, 16, 17}) {
@@ -175,6 +175,26 @@ TEST(ForceField, ForcesDoNotDependOnWhatIsSummed) {
     ASSERT_EQ(none.force[i], full.force[i]);
   }
   EXPECT_EQ(trace.virial_trace, full.virial_trace);
+}
+
+// Grains share registers; what one computes must not change when another is torn (volume ratios far from 1 take another
+// way).
+TEST(ForceField, ForcesDoNotDependOnOthersInTheBlock) {
+  const Packing packing = small_packing({.box = Box({0, 0, 0}, {60, 60, 60}), .n_grains = 8, .least_distance = 9.0});
+  const std::size_t n = packing.position.size() / 8, torn = 3;
+  Packing other = packing;
+  for (std::size_t i = torn * n; i < torn * n + n; i += 5) {
+    other.position[i] += Vector3(0.9, -0.7, 0.8);
+  }
+  for (const Precision precision : {Precision::full, Precision::mixed}) {
+    const Evaluated whole = evaluate(packing, Virial::trace, {}, Matrix3::Zero(), precision);
+    const Evaluated with_torn = evaluate(other, Virial::trace, {}, Matrix3::Zero(), precision);
+    for (std::size_t i = 0; i < packing.position.size(); ++i) {
+      if (i / n != torn) {
+        ASSERT_EQ(whole.force[i], with_torn.force[i]) << "node " << i;
+      }
+    }
+  }
 }
 
 TEST(ForceField, NewtonsThirdLaw) {
