@@ -3,7 +3,6 @@
 #include "bpm/app/progress_display.h"
 #include "bpm/app/run_quantities.h"
 #include "bpm/app/scene_estimate.h"
-#include "bpm/dynamics/stable_step.h"
 #include "bpm/packing/lane_layout.h"
 #include "bpm/scene/scene_packing.h"
 #include "bpm/scene/scene_size.h"
@@ -41,27 +40,15 @@ void print_templates(const Packing& packing, const Scene& scene) {
 }
 
 /// Returns whether the time step is stable for every grain of the packing.
-bool print_time_step(const Packing& packing, const Scene& scene) {
-  double smallest = 1e300, of_alpha = 0.0;
-  std::vector<std::pair<int, double>> seen;
-  for (const Grain& grain : packing.grains) {
-    const std::pair<int, double> kind(grain.template_index, grain.alpha);
-    constexpr std::size_t most_kinds = 16; // more would differ little
-    if (seen.size() < most_kinds && std::find(seen.begin(), seen.end(), kind) == seen.end() &&
-        !packing.template_of(static_cast<int>(&grain - packing.grains.data())).bonds.empty()) {
-      seen.push_back(kind);
-      const double step = stable_step(*packing.templates[grain.template_index], scene.material, grain.alpha);
-      if (step < smallest) {
-        smallest = step;
-        of_alpha = grain.alpha;
-      }
-    }
+bool print_time_step(const Scene& scene, const std::optional<PackingStep>& stable) {
+  if (!stable) {
+    fmt::print("time step: {:g} tau; no grain has bonds\n", scene.options.dt);
+    return true;
   }
-  const bool stable = seen.empty() || scene.options.dt < smallest;
-  fmt::print(
-      "time step: {:g} tau; bonds are stable up to {:.3g} tau (alpha = {:g}), deep contacts to somewhat less{}\n",
-      scene.options.dt, smallest, of_alpha, stable ? "" : ": TOO LARGE");
-  return stable;
+  const bool good = scene.options.dt < stable->dt;
+  fmt::print("time step: {:g} tau; bonds are stable up to {:.4g} tau (alpha = {:g}), deep contacts to somewhat less{}\n",
+             scene.options.dt, stable->dt, stable->alpha, good ? "" : ": TOO LARGE");
+  return good;
 }
 
 void print_memory(const Packing& packing, double bytes, std::int64_t nodes) {
@@ -117,7 +104,7 @@ ExitCode check(const CheckArguments& a) {
              packing.n_grains(), numbers.phi_reference(packing.box));
   print_templates(packing, scene);
   fmt::print("lanes filled: {:.0f} %\n", 100.0 * LaneLayout(packing).filled());
-  const bool stable = print_time_step(packing, scene);
+  const bool stable = print_time_step(scene, settle_time_step(scene, packing));
   if (!stable) {
     return ExitCode::check_failed; // it would blow up while its speed is measured
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/command.h"
 #include "bpm/app/run_session.h"
+#include "bpm/io/input_error.h"
 #include "bpm/io/output_file.h"
 #include "bpm/scene/scene_packing.h"
 
@@ -30,10 +31,24 @@ void copy_scene(const Scene& scene, const OutputFolder& folder, bool force) {
   file.close();
 }
 
+/// A scene's folder has no ".." in it; a link on the way could lead outside all the same.
+void check_inside(const Scene& scene) {
+  const std::filesystem::path here = std::filesystem::canonical(std::filesystem::current_path());
+  const std::filesystem::path there = std::filesystem::weakly_canonical(here / scene.output.directory);
+  if (std::mismatch(here.begin(), here.end(), there.begin(), there.end()).first != here.end()) {
+    throw InputError(fmt::format("{}: output.directory = {}: leads to {} through a link, outside of the current folder; "
+                                 "--output may name any folder",
+                                 scene.path.string(), scene.output.directory.string(), there.string()));
+  }
+}
+
 ExitCode run(const RunArguments& a) {
   Scene scene = read_scene(a.scene, a.overrides);
   scene.options.threads = a.threads.value_or(scene.options.threads);
   scene.wall_time = a.wall_time ? a.wall_time : scene.wall_time;
+  if (a.output.empty()) {
+    check_inside(scene);
+  }
   const OutputFolder folder(a.output.empty() ? scene.output.directory : a.output);
   folder.check_free(a.force);
   const PoissonTable table = PoissonTable::installed();
@@ -47,6 +62,11 @@ ExitCode run(const RunArguments& a) {
   setup.packing = make_start(setup.scene, table, narrate);
   setup.modulus = effective_modulus(setup.packing, setup.scene.material, table);
   setup.stages = resolve_pressures(setup.scene, setup.modulus);
+  const bool automatic = setup.scene.automatic_dt;
+  check_time_step(setup.scene, settle_time_step(setup.scene, setup.packing));
+  if (automatic) {
+    narrate(fmt::format("time step: {:.4g} tau", setup.scene.options.dt));
+  }
   // Everything that can be wrong with the input has been found by now: from here on files are written.
   folder.create(a.force);
   copy_scene(setup.scene, folder, a.force);

@@ -47,6 +47,17 @@ std::string describe_torn_grain(double share, std::int64_t step, double dt) {
       step, 100.0 * share, likely_cause(dt));
 }
 
+std::string describe_alternation(const Block& block, std::int64_t step, double dt, double moved) {
+  int grain = -1;
+  for (const int other : block.grain) {
+    grain = grain < 0 ? other : grain;
+  }
+  return fmt::format("blow-up at step {}: the nodes of grain {} or one of the {} grains stored with it turn round at every step "
+                     "({:.3g} d each): dt = {:g} tau is too large for these grains and their contacts; try a smaller run.dt, or "
+                     "run.dt = \"auto\"",
+                     step, grain, block.n_grains(), moved, dt);
+}
+
 std::string describe_stretched_bond(const ForceField::Stretch& stretch, std::int64_t step, double dt) {
   return fmt::format(
       "blow-up at step {}: a bond of node {} of grain {} is stretched to {:.3g} times its length, more than "

@@ -19,6 +19,9 @@ std::string describe_fast_node(const Block& block, const LaneState& state, std::
 /// The same for a grain whose nodes are too far from its centre for fixed-point positions.
 std::string describe_torn_grain(double share, std::int64_t step, double dt);
 
+/// The same for a block of grains whose velocities turn round at every step; `moved` in d a step, root mean square.
+std::string describe_alternation(const Block& block, std::int64_t step, double dt, double moved);
+
 /// The same for a bond that is stretched beyond `largest_bond_stretch`.
 std::string describe_stretched_bond(const ForceField::Stretch& stretch, std::int64_t step, double dt);
 

@@ -15,8 +15,9 @@ namespace boba {
 
 namespace {
 
-/// Steps between two looks for overstretched bonds.
+/// Steps between two looks for overstretched bonds, and for velocities that turn round at every step.
 constexpr std::int64_t stretch_interval = 100;
+constexpr std::int64_t alternation_interval = 50;
 
 void check(const Packing& packing, const SimulationOptions& options) {
   if (packing.grains.empty()) {
@@ -69,8 +70,12 @@ struct Simulation::Impl {
     const auto* shear = std::get_if<ShearStage>(&stage);
     const std::vector<Observer*> wanting = interested(observers, shear != nullptr ? shear->rate : 0.0);
     const bool full = !wanting.empty() || driver->may_end(stepper);
-    const Virial virial = full ? Virial::full : driver->needs_pressure() ? Virial::trace : Virial::none;
+    const bool look = (stepper.step() + 1) % alternation_interval == 0;
+    const Virial virial = full ? Virial::full : driver->needs_pressure() || look ? Virial::trace : Virial::none;
     stepper.advance(virial);
+    if (look) {
+      stepper.check_alternation();
+    }
     stepper.move_cell(driver->update(stepper));
     check_bonds();
     if (full) {

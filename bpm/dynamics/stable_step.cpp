@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/dynamics/stable_step.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace boba {
@@ -11,7 +15,10 @@ namespace {
 
 using Vectors = std::vector<Eigen::Vector3d>;
 
-constexpr int power_iterations = 200;
+constexpr int most_iterations = 400;
+constexpr double tolerance = 1e-13; ///< relative change of the step in one iteration, three times in a row
+/// Taken from the operator, whose spectrum reaches from 0 to 4: its largest eigenvalue then stands out more.
+constexpr double shift = 1.8;
 
 /// The bond network linearised about its undeformed state.
 class LinearNetwork {
@@ -71,33 +78,22 @@ private:
   Vectors direction_;
 };
 
-double norm(const Vectors& x) {
+double dot(const Vectors& x, const Vectors& y) {
   double sum = 0.0;
-  for (const Eigen::Vector3d& v : x) {
-    sum += v.squaredNorm();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    sum += x[i].dot(y[i]);
   }
-  return std::sqrt(sum);
+  return sum;
 }
 
-/// Largest eigenvalue of a map whose spectrum is real and not negative.
-template <typename Map> double largest_eigenvalue(const Map& map, std::size_t n) {
+/// A start for power iteration: alternating in space and without symmetry, as the stiffest modes are.
+Vectors rough_vectors(std::size_t n) {
   Vectors x(n);
-  for (std::size_t i = 0; i < n; ++i) { // alternating in space and without symmetry: the stiffest modes look like that
-    x[i] = {std::sin(1.0 + 12.9898 * i), std::sin(2.0 + 78.233 * i), std::sin(3.0 + 37.719 * i)};
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto s = static_cast<double>(i);
+    x[i] = {std::sin(1.0 + 12.9898 * s), std::sin(2.0 + 78.233 * s), std::sin(3.0 + 37.719 * s)};
   }
-  double value = 0.0;
-  for (int iteration = 0; iteration < power_iterations; ++iteration) {
-    const double length = norm(x);
-    for (Eigen::Vector3d& v : x) {
-      v /= length;
-    }
-    x = map(x);
-    value = norm(x);
-    if (!(value > 0.0)) {
-      return 0.0;
-    }
-  }
-  return value;
+  return x;
 }
 
 } // namespace
@@ -107,11 +103,53 @@ double stable_step(const GrainTemplate& grain, const Material& material, double 
     throw std::invalid_argument("stable step: the template has no bonds");
   }
   const LinearNetwork network(grain, material, alpha);
-  const std::size_t n = grain.position.size();
-  const double w2 = largest_eigenvalue([&](const Vectors& u) { return network.stiffness(u); }, n) / material.node_mass;
-  const double c = largest_eigenvalue([&](const Vectors& v) { return network.damping(v); }, n) / material.node_mass;
-  // The positive root of dt^2 w^2 + 2 dt c = 4.
-  return 4.0 / (c + std::sqrt(c * c + 4.0 * w2));
+  Vectors u = rough_vectors(grain.position.size());
+  double dt = 0.0;
+  for (int iteration = 0, quiet = 0; iteration < most_iterations && quiet < 3; ++iteration) {
+    const double length = std::sqrt(dot(u, u));
+    for (Eigen::Vector3d& v : u) {
+      v /= length;
+    }
+    const Vectors stiff = network.stiffness(u), damped = network.damping(u);
+    const double w2 = dot(u, stiff) / material.node_mass, c = dot(u, damped) / material.node_mass;
+    const double before = dt;
+    dt = 4.0 / (c + std::sqrt(c * c + 4.0 * w2)); // the positive root of dt^2 w^2 + 2 dt c = 4
+    quiet = std::abs(dt - before) < tolerance * dt ? quiet + 1 : 0;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      u[i] = (dt * dt * stiff[i] + 2.0 * dt * damped[i]) / material.node_mass - shift * u[i];
+    }
+  }
+  return dt;
+}
+
+namespace {
+
+/// Templates looked at when every grain has a network of its own, as in data from elsewhere: they differ little.
+constexpr std::size_t most_templates = 8;
+
+} // namespace
+
+std::optional<PackingStep> stable_step(const Packing& packing, const Material& material) {
+  std::map<int, std::pair<double, double>> alphas; // smallest and largest, by template
+  for (const Grain& grain : packing.grains) {
+    const auto [at, is_new] = alphas.try_emplace(grain.template_index, grain.alpha, grain.alpha);
+    at->second = {std::min(at->second.first, grain.alpha), std::max(at->second.second, grain.alpha)};
+  }
+  std::optional<PackingStep> smallest;
+  std::size_t n_templates = 0;
+  for (const auto& [index, range] : alphas) {
+    const GrainTemplate& grain = *packing.templates[index];
+    if (grain.bonds.empty() || ++n_templates > most_templates) {
+      continue;
+    }
+    for (const double alpha : std::set{range.first, range.second}) {
+      const double step = stable_step(grain, material, alpha);
+      if (!smallest || step < smallest->dt) {
+        smallest = {step, alpha};
+      }
+    }
+  }
+  return smallest;
 }
 
 } // namespace boba

@@ -15,6 +15,9 @@ namespace {
 /// Steps between two looks at the range of fixed-point positions. In one step a node moves at most half a diameter.
 constexpr std::int64_t recentre_interval = 64;
 constexpr double largest_range_share = 0.45;
+/// Kinetic energy of full steps over that of half steps below which velocities change sign from step to step.
+constexpr double least_smoothness = 0.25;
+constexpr double least_motion = 1e-4; ///< d a step, root mean square: below it, rounding may look like that
 
 } // namespace
 
@@ -80,8 +83,10 @@ void Stepper::drift() {
   const std::vector<kernels::DriftResult> results = forces_.drift(state_, drift);
   check_drift(results);
   double speed2 = 0.0;
+  half_step_speed2_.clear();
   for (const kernels::DriftResult& result : results) {
     speed2 = std::max(speed2, result.largest_speed2);
+    half_step_speed2_.push_back(result.checksum);
   }
   forces_.contact_list().note_motion(cell_map_, options_.dt * std::sqrt(speed2));
   cell_map_.setIdentity();
@@ -94,6 +99,24 @@ void Stepper::check_drift(const std::vector<kernels::DriftResult>& results) cons
   for (std::size_t b = 0; b < results.size(); ++b) {
     if (!std::isfinite(results[b].checksum) || results[b].largest_speed2 > limit * limit) {
       throw BlowUp(describe_fast_node(layout_.blocks()[b], state_, step_ + 1, options_.dt, material_));
+    }
+  }
+}
+
+void Stepper::check_alternation() const {
+  if (!clamps_.empty() || residual_rate_ != Matrix3::Zero()) {
+    return; // part of the velocities is then not the nodes' own
+  }
+  for (std::size_t b = 0; b < half_step_speed2_.size(); ++b) {
+    const Block& block = layout_.blocks()[b];
+    double full_step = 0.0;
+    for (const int grain : block.grain) {
+      full_step += grain >= 0 ? forces_.grain_sums()[grain].kinetic_trace : 0.0;
+    }
+    const double half_step = half_step_speed2_[b] * material_.node_mass;
+    const double moved2 = options_.dt * options_.dt * half_step_speed2_[b] / (block.n_grains() * block.n_nodes);
+    if (full_step < least_smoothness * half_step && moved2 > least_motion * least_motion) {
+      throw BlowUp(describe_alternation(block, step_, options_.dt, std::sqrt(moved2)));
     }
   }
 }

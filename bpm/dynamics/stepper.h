@@ -39,6 +39,10 @@ public:
   void volumes_only() { forces_.volumes_only(state_); }
   /// Drift, forces, kick. The cell stands still; see move_cell.
   void advance(Virial virial);
+  /// After a step with a virial: \throws BlowUp when the velocities of some grains turn round at every step. The velocity
+  /// of a full step is the mean of two half steps, so that it then nearly vanishes. Beyond the stable step a vibration
+  /// may stay finite like this for good, because it stretches its bonds: nothing else would show it.
+  void check_alternation() const;
   /// Moves the cell at the end of a step, flips it when it leans too far, and advances time and strain.
   void move_cell(const CellRates& rates);
   /// The same for any velocity gradient of the cell (upper triangular), of which `of_positions` acts on the nodes.
@@ -116,6 +120,7 @@ private:
   Matrix3 cell_map_ = Matrix3::Identity();     ///< of the whole cell, at the end of the last step
   Matrix3 position_map_ = Matrix3::Identity(); ///< the part of it that acts on positions, not yet applied
   Matrix3 residual_rate_ = Matrix3::Zero();    ///< the rest, as a rate of the cell matrix
+  std::vector<double> half_step_speed2_; ///< per block: sum of v^2 at the last drift
   double evaluated_volume_ = 1.0;              ///< of the cell that the last forces belong to
   double pressure_ = 0.0, kinetic_energy_ = 0.0;
   double integration_seconds_ = 0.0;

@@ -60,10 +60,16 @@ template <typename Visit> void for_each_entry(const CheckpointData& data, Visit 
 }
 
 void write_entries(OutputFile& out, const CheckpointData& data) {
+  constexpr std::size_t portion = 1 << 18;
   Checksum checksum;
+  std::string gathered; // names and lengths are a few bytes each: they go out together
   const auto put = [&](std::string_view bytes) {
     checksum.add(bytes);
-    out.write(bytes);
+    gathered += bytes;
+    if (gathered.size() >= portion) {
+      out.write(gathered);
+      gathered.clear();
+    }
   };
   const auto put_number = [&](std::uint64_t number) { put(bytes_of(&number, 1)); };
   std::uint64_t length = mark.size() + 3 * sizeof(std::uint64_t), n_entries = 0;
@@ -82,7 +88,8 @@ void write_entries(OutputFile& out, const CheckpointData& data) {
     put(bytes);
   });
   const std::uint64_t sum = checksum.value();
-  out.write(bytes_of(&sum, 1));
+  gathered += bytes_of(&sum, 1);
+  out.write(gathered);
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {

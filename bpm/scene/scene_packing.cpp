@@ -138,6 +138,27 @@ Packing make_start(const Scene& scene, const PoissonTable& table, const Narrator
   return make_placed(scene, table, narrate);
 }
 
+std::optional<PackingStep> settle_time_step(Scene& scene, const Packing& packing) {
+  const std::optional<PackingStep> stable = stable_step(packing, scene.material);
+  if (scene.automatic_dt) {
+    if (stable) {
+      scene.options.dt = automatic_share * stable->dt;
+    }
+    scene.automatic_dt = false;
+    scene.overrides.push_back(fmt::format("run.dt={}", scene.options.dt));
+  }
+  return stable;
+}
+
+void check_time_step(const Scene& scene, const std::optional<PackingStep>& stable) {
+  if (stable && !(scene.options.dt < stable->dt)) {
+    throw InputError(fmt::format("{}: run.dt = {:g} tau: the bonds of grains with alpha = {:g} are stable only below {:.4g} tau; "
+                                 "run.dt = \"auto\" takes {:.4g}",
+                                 scene.path.string(), scene.options.dt, stable->alpha, stable->dt,
+                                 automatic_share * stable->dt));
+  }
+}
+
 std::optional<double> effective_modulus(const Packing& packing, const Material& material, const PoissonTable& table) {
   double sum = 0.0, nodes = 0.0;
   for (int g = 0; g < packing.n_grains(); ++g) {

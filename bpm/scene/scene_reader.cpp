@@ -27,7 +27,8 @@ AlphaChoice read_alpha(const SceneTable& table, bool needed) {
 }
 
 void read_run(const SceneTable& table, Scene& scene) {
-  scene.options.dt = table.real("dt", scene.options.dt);
+  scene.automatic_dt = table.is_word("dt");
+  scene.options.dt = scene.automatic_dt ? scene.options.dt : table.real("dt", scene.options.dt);
   scene.options.skin = table.real("skin", scene.options.skin);
   scene.options.precision = table.text("precision", "double") == "mixed" ? Precision::mixed : Precision::full;
   const auto threads = static_cast<int>(table.integer("threads", 0));

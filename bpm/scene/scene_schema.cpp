@@ -66,7 +66,10 @@ std::vector<SceneSection> general_sections() {
               {text_key("title", "", "what the scene is; copied into the results"),
                integer_key("seed", 0.0, largest_seed, "1", "placement and rotation of the grains")}),
       section("run", "How the run is computed.",
-              {above_key("dt", "tau", 0.0, 1.0, "0.1", "time step"),
+              {or_word(above_key("dt", "tau", 0.0, 1.0, "0.1",
+                                 "time step; \"auto\" takes 0.6 of the largest step at which the grains' bonds are "
+                                 "stable (docs/stability.md). A step beyond that is refused"),
+                       {"auto"}),
                integer_key("threads", 0.0, 1024.0, "0", "threads; 0 takes all cores. The result does not depend on it"),
                choice_key("precision", {"double", "mixed"}, "\"double\"",
                           "mixed: positions in 32-bit fixed point from their grain's centre, the rest in floats; "

@@ -31,6 +31,12 @@ bool in_range(const SceneKey& key, double value) {
   return std::isfinite(value) && value <= key.highest && (key.above_lowest ? value > key.lowest : value >= key.lowest);
 }
 
+std::optional<SceneValue> checked_choice(const SceneKey& key, const TomlNode& node) {
+  const bool known =
+      node.kind == Kind::text && std::find(key.choices.begin(), key.choices.end(), node.text) != key.choices.end();
+  return known ? std::optional<SceneValue>(node.text) : std::nullopt;
+}
+
 /// The value if the key allows it.
 std::optional<SceneValue> checked(const SceneKey& key, const TomlNode& node) {
   using Type = SceneKey::Type;
@@ -41,13 +47,12 @@ std::optional<SceneValue> checked(const SceneKey& key, const TomlNode& node) {
     return node.kind == Kind::integer && in_range(key, number(node)) ? std::optional<SceneValue>(node.integer)
                                                                      : std::nullopt;
   case Type::real:
-    return is_number(node) && in_range(key, number(node)) ? std::optional<SceneValue>(number(node)) : std::nullopt;
+    return is_number(node) && in_range(key, number(node)) ? std::optional<SceneValue>(number(node))
+                                                          : checked_choice(key, node);
   case Type::text:
     return node.kind == Kind::text ? std::optional<SceneValue>(node.text) : std::nullopt;
   case Type::choice:
-    return node.kind == Kind::text && std::find(key.choices.begin(), key.choices.end(), node.text) != key.choices.end()
-               ? std::optional<SceneValue>(node.text)
-               : std::nullopt;
+    return checked_choice(key, node);
   case Type::vector3: {
     const auto good = [&key](const TomlNode& item) { return is_number(item) && in_range(key, number(item)); };
     if (node.kind != Kind::array || node.items.size() != 3 ||

@@ -19,6 +19,11 @@ public:
   SceneTable(const SceneSection& section, std::string name, const TomlNode* node, const std::string& file);
 
   bool has(const std::string& key) const { return values_.contains(key); }
+  /// True when a word stands where a number may, see or_word.
+  bool is_word(const std::string& key) const {
+    const auto at = values_.find(key);
+    return at != values_.end() && std::holds_alternative<std::string>(at->second);
+  }
   bool boolean(const std::string& key, bool fallback) const { return value_or<bool>(key, fallback); }
   std::int64_t integer(const std::string& key, std::int64_t fallback) const { return value_or(key, fallback); }
   double real(const std::string& key, double fallback) const { return value_or(key, fallback); }

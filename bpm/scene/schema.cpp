@@ -43,7 +43,8 @@ std::string SceneKey::allowed() const {
   case Type::integer:
     return "a whole number" + range_text(*this);
   case Type::real:
-    return "a number" + range_text(*this);
+    return "a number" + range_text(*this) +
+           (choices.empty() ? "" : fmt::format(", or \"{}\"", fmt::join(choices, "\", \"")));
   case Type::text:
     return "a text in quotes";
   case Type::choice:
@@ -100,6 +101,11 @@ SceneKey vector_key(std::string name, std::string unit, double lowest, double hi
 
 SceneKey required(SceneKey key) {
   key.required = true;
+  return key;
+}
+
+SceneKey or_word(SceneKey key, std::vector<std::string> words) {
+  key.choices = std::move(words);
   return key;
 }
 

@@ -26,7 +26,7 @@ struct SceneKey {
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
   bool above_lowest = false; ///< the lowest value itself is not allowed
-  std::vector<std::string> choices;
+  std::vector<std::string> choices; ///< of a choice; of a number: words that may stand in its place
 
   /// "a number above 0 and at most 1 (tau)": the end of every message about this key.
   std::string allowed() const;
@@ -45,6 +45,8 @@ SceneKey choice_key(std::string name, std::vector<std::string> choices, std::str
 SceneKey vector_key(std::string name, std::string unit, double lowest, double highest, std::string fallback,
                     std::string doc);
 SceneKey required(SceneKey key);
+/// The same, and these words are allowed in place of a number.
+SceneKey or_word(SceneKey key, std::vector<std::string> words);
 
 /// The keys of one table of a scene.
 struct SceneSection {

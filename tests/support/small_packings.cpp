@@ -62,7 +62,9 @@ Packing small_packing(const SmallPackingSpec& spec) {
       free = free && spec.box.minimum_image(placement.centre - other.centre).norm() > spec.least_distance;
     }
     if (free) {
-      placement.rotation = Eigen::Quaterniond(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)).normalized();
+      // One by one: in what order a call's arguments are computed is the compiler's choice.
+      const double z = uniform(-1, 1), y = uniform(-1, 1), x = uniform(-1, 1), w = uniform(-1, 1);
+      placement.rotation = Eigen::Quaterniond(w, x, y, z).normalized();
       placements.push_back(placement);
     }
   }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a user gets to see when something is wrong: exit codes, messages, and nothing written.
-#include "tests/robustness/app/small_scene.h"
+#include "tests/robustness/app/same_run.h"
 
 #include <gtest/gtest.h>
+#include <set>
 
 namespace boba::test {
 namespace {
@@ -88,12 +89,85 @@ TEST(CommandLine, ExistingOutputIsKeptWithoutForce) {
 TEST(CommandLine, ABlowUpStopsWithACauseAndKeepsTheCheckpoint) {
   const TemporaryFolder folder;
   folder.file("scene.toml", small_scene);
-  const ProgramResult result = boba({"run", "scene.toml", "--set", "run.dt=0.9"}, folder);
+  // Bonds are stable at dt = 0.1; contacts as stiff as these are not.
+  const ProgramResult result = boba({"run", "scene.toml", "--set", "material.k3=1e6"}, folder);
   EXPECT_EQ(result.exit_code, 1);
   for (const char* word : {"node", "grain", "step", "dt"}) {
     EXPECT_TRUE(has(result.err, word)) << word << " is missing in: " << result.err;
   }
   EXPECT_FALSE(std::filesystem::is_empty(folder / "out/checkpoints"));
+}
+
+std::set<std::string> names_in(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.insert(entry.path().filename().string());
+  }
+  return names;
+}
+
+/// A scene is data: its texts reach no shell, and its folder is below the current one.
+TEST(CommandLine, AScenesTextsAreOnlyTexts) {
+  const TemporaryFolder folder;
+  const std::string trap = "$(touch trap) `touch trap`; touch trap | touch trap & %s%n";
+  std::string scene = small_scene;
+  scene.replace(scene.find("four small grains"), 17, trap);
+  scene.replace(scene.find("name = \"grain\""), 14, "name = \"" + trap + "\"");
+  scene.replace(scene.find("\"out\""), 5, "\"out $(touch trap);\"");
+  folder.file("scene.toml", scene);
+  const std::string out = "out $(touch trap);";
+  ASSERT_EQ(boba({"run", "scene.toml", "--set", "stage.2.strain=0.01"}, folder).exit_code, 0);
+  ASSERT_EQ(boba({"resume", out}, folder).exit_code, 0);
+  ASSERT_EQ(boba({"measure", out, "--what", "stress"}, folder).exit_code, 0);
+  EXPECT_EQ(names_in(folder / ""), (std::set<std::string>{"scene.toml", out}));
+  EXPECT_FALSE(names_in(folder / out).contains("trap"));
+}
+
+TEST(CommandLine, AScenesFolderIsBelowTheCurrentOneThroughLinksToo) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  std::filesystem::create_directories(folder / "work");
+  std::filesystem::create_directories(folder / "elsewhere");
+  std::filesystem::create_directory_symlink(folder / "elsewhere", folder / "work/link");
+  std::filesystem::copy_file(folder / "scene.toml", folder / "work/scene.toml");
+  const ProgramResult result = run_program({BOBA_PROGRAM, "run", "scene.toml", "--set", "output.directory=link/out"}, (folder / "work").string());
+  EXPECT_EQ(result.exit_code, 2) << result.out;
+  EXPECT_TRUE(has(result.err, "output.directory") && has(result.err, "--output")) << result.err;
+  EXPECT_TRUE(names_in(folder / "elsewhere").empty());
+}
+
+TEST(CommandLine, AStepThatTheBondsCannotTakeIsRefusedBeforeAnythingIsWritten) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  const ProgramResult result = boba({"run", "scene.toml", "--set", "run.dt=0.9"}, folder);
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  for (const char* word : {"run.dt = 0.9", "alpha = 2", "auto"}) {
+    EXPECT_TRUE(has(result.err, word)) << word << " is missing in: " << result.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+/// The number that "auto" stands for is kept: the run, what is made of it later and a resumed run share one step.
+TEST(CommandLine, AnAutomaticStepIsARememberedNumber) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  const std::vector<std::string> run{"run", "scene.toml", "--set", "run.dt=auto", "--set", "stage.2.strain=0.1"};
+  const ProgramResult result = boba(run, folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string scene = content_of(folder / "out/scene.toml");
+  const std::size_t at = scene.find("# --set run.dt=0.");
+  ASSERT_NE(at, std::string::npos) << scene;
+  const std::string number = scene.substr(at + 15, scene.find('\n', at) - at - 15);
+  EXPECT_GT(std::stod(number), 0.05);
+  EXPECT_LT(std::stod(number), 0.2);
+  std::vector<std::string> again{"run", "scene.toml", "--set", "run.dt=" + number, "--set", "stage.2.strain=0.1", "--output", "again"};
+  ASSERT_EQ(boba(again, folder).exit_code, 0);
+  expect_same_run(folder / "out", folder / "again");
+  std::vector<std::string> cut = run;
+  cut.insert(cut.end(), {"--output", "cut", "--wall-time", "0.03"});
+  ASSERT_EQ(boba(cut, folder).exit_code, 75);
+  ASSERT_EQ(boba({"resume", "cut"}, folder).exit_code, 0);
+  expect_same_run(folder / "out", folder / "cut");
 }
 
 TEST(CommandLine, CheckSaysWhatWouldRunAndFailsAnUnstableStep) {

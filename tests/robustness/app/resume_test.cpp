@@ -60,6 +60,17 @@ TEST(Resume, AfterSignals) {
   }
 }
 
+/// MDAnalysis reads each of these trajectories, and finds the frames of the first or, in a run that is not over, its first frames.
+void expect_readable(const std::filesystem::path& whole, const std::vector<std::filesystem::path>& others,
+                     const std::string& how) {
+  std::vector<std::string> command{BOBA_PYTHON, BOBA_READ_RUNS, how, whole.string()};
+  for (const std::filesystem::path& other : others) {
+    command.push_back(other.string());
+  }
+  const ProgramResult result = run_program(command, whole.parent_path().string());
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+}
+
 /// Killed again and again at random moments until it is through; BOBA_KILLS asks for more kills than a few.
 TEST(Resume, AfterBeingKilled) {
   const TemporaryFolder folder;
@@ -72,6 +83,11 @@ TEST(Resume, AfterBeingKilled) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> moment(0.0, 0.35);
   int n_kills = 0, n_rounds = 0;
+  std::vector<std::filesystem::path> after_kills, after_ends; // trajectories
+  const auto keep = [&](const std::string& out, std::vector<std::filesystem::path>& kept) {
+    kept.push_back(folder / ("kept" + std::to_string(after_kills.size() + after_ends.size()) + ".h5"));
+    std::filesystem::copy_file(folder / out / "trajectory.h5", kept.back());
+  };
   while (n_kills < n_wanted) {
     const std::string out = "killed" + std::to_string(n_rounds++);
     std::vector<std::string> run{"run", "scene.toml", "--output", out};
@@ -83,6 +99,7 @@ TEST(Resume, AfterBeingKilled) {
     }
     while (result.signal == SIGKILL) {
       ++n_kills;
+      keep(out, after_kills);
       result = n_kills < n_wanted ? boba({"resume", out, "--quiet"}, folder, Disturbance{0.05 + moment(random), SIGKILL})
                                   : boba({"resume", out, "--quiet"}, folder);
       ASSERT_TRUE(result.signal == SIGKILL || result.exit_code == 0) << result.err;
@@ -92,9 +109,12 @@ TEST(Resume, AfterBeingKilled) {
     for (const char* table : {"motion.csv", "grain_motion.csv", "order.csv"}) {
       EXPECT_EQ(content_of(folder / "alone/measures" / table), content_of(folder / out / "measures" / table)) << table;
     }
+    keep(out, after_ends);
     std::filesystem::remove_all(folder / out);
     ASSERT_LT(n_rounds, 1000) << "the run ends before it is killed";
   }
+  expect_readable(folder / "alone/trajectory.h5", after_ends, "same");
+  expect_readable(folder / "alone/trajectory.h5", after_kills, "first");
   RecordProperty("kills", n_kills);
 }
 
