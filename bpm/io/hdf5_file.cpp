@@ -207,9 +207,10 @@ std::string File::text_attribute(const std::string& object, const std::string& n
 void File::write_text(const std::string& name, const std::string& text) const {
   const Handle type = text_type(text.size());
   const Handle space(H5Screate(H5S_SCALAR));
-  const Handle dataset(
+  Handle dataset(
       check(H5Dcreate2(id_, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), "making " + name));
   check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()), "writing " + name);
+  close_dataset(dataset, name);
 }
 
 std::string File::read_text(const std::string& name) const {
@@ -286,8 +287,9 @@ int File::compression(const std::string& name) const {
 void File::set_frames(const std::string& name, hsize_t n_frames) const {
   std::vector<hsize_t> extent = shape(name);
   extent.at(0) = n_frames;
-  const Handle dataset(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), "opening " + name));
+  Handle dataset(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), "opening " + name));
   check(H5Dset_extent(dataset, extent.data()), "resizing " + name);
+  close_dataset(dataset, name);
 }
 
 void File::write_frame_raw(const std::string& name, hsize_t frame, const void* values, hid_t type, hsize_t n) const {
@@ -350,6 +352,7 @@ void File::reserve(std::uint64_t n_bytes) const {
     code = fallocate(descriptor, 0, 0, static_cast<off_t>(length + n_bytes)) == 0 ? 0 : errno;
   }
   if (code != 0 && code != EOPNOTSUPP && code != ENOSYS) {
+    let_go(); // what HDF5 still holds may not fit either
     throw std::runtime_error(
         fmt::format("{}: no room for {} more bytes: {}", path_.string(), n_bytes, std::strerror(code)));
   }
