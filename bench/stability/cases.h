@@ -56,6 +56,7 @@ OutputFile csv(const Folder& folder, const std::string& name, const std::string&
 void time_step(const Folder& folder);
 void spectrum(const Folder& folder);
 void energy(const Folder& folder);
+void cycles(const Folder& folder);
 void conservation(const Folder& folder);
 void rounding(const Folder& folder);
 void rest(const Folder& folder);

@@ -128,12 +128,30 @@ void bulk_loops(const Folder& folder) {
   file.close();
 }
 
+/// The same loop for larger and larger pieces of bulk: does the work per energy vanish where the network looks isotropic?
+void bulk_sizes(const Folder& folder) {
+  OutputFile file = csv(folder, "energy_sizes", "edge_d,nodes,alpha_kd,sense," + columns);
+  for (const double edge : {5.0, 6.0, 8.0, 11.0, 14.0}) {
+    const auto cube = periodic_cube(edge);
+    for (const double alpha : {2.0, 12.0}) {
+      for (const double sense : {1.0, -1.0}) {
+        Deformation deformation(bulk(cube, alpha), Material{}, 0.1);
+        deformation.follow({ramp(0.03), 60.0, 100}, 0.0, 1.0);
+        file.print("{},{},{},{},{}\n", edge, cube->n_nodes(), alpha, sense,
+                   row(deformation.follow({loop(0.03, sense), 200.0, 400}, 0.0, 1.0)));
+        file.flush();
+      }
+    }
+  }
+  file.close();
+}
+
 /// Cyclic shear of a packing at P~ = 0.1 with fixed volume, as an experiment would do it.
 void packing_cycles(const Folder& folder) {
   OutputFile file = csv(folder, "energy_packing", "grains,nodes,alpha_kd,gamma,amplitude,cycle," + columns);
   for (const double alpha : {-0.8, 0.0, 2.0, 12.0}) {
     for (const double gamma : {1.0, 0.0}) {
-      for (const double amplitude : {0.01, 0.1}) {
+      for (const double amplitude : {0.01, 0.05}) {
         const PackingSpec spec{.n_nodes = 60, .alpha = alpha};
         try {
           Deformation deformation(compressed(spec), Material{.gamma = gamma}, 0.05);
@@ -188,7 +206,11 @@ void left_alone(const Folder& folder) {
 void energy(const Folder& folder) {
   left_alone(folder);
   bulk_loops(folder);
+}
+
+void cycles(const Folder& folder) {
   packing_cycles(folder);
+  bulk_sizes(folder);
 }
 
 } // namespace boba::bench

@@ -19,7 +19,8 @@ int main(int argc, char** argv) {
   using namespace boba::bench;
   for (const Sweep& sweep : {Sweep{"time_step", "largest stable step: linearised operator and experiment", time_step},
                              Sweep{"spectrum", "growth of an undamped grain, from the spectrum", spectrum},
-                             Sweep{"energy", "energy ledgers over closed strain cycles; undamped grains", energy},
+                             Sweep{"energy", "energy ledgers of bulk over closed loops of strain; undamped grains left alone", energy},
+                             Sweep{"cycles", "the same ledger for sheared packings, and for larger and larger bulk", cycles},
                              Sweep{"conservation", "momenta of a free grain over 1e6 steps", conservation},
                              Sweep{"rounding", "error growth against a more precise twin", rounding},
                              Sweep{"rest", "1e7 steps of packings at rest", rest},

@@ -17,7 +17,8 @@ constexpr std::int64_t recentre_interval = 64;
 constexpr double largest_range_share = 0.45;
 /// Kinetic energy of full steps over that of half steps below which velocities change sign from step to step.
 constexpr double least_smoothness = 0.25;
-constexpr double least_motion = 1e-4; ///< d a step, root mean square: below it, rounding may look like that
+/// d a step, root mean square over a block. Below it a few nodes at most may do that, at the ends of a bond that collapsed.
+constexpr double least_motion = 3e-3;
 
 } // namespace
 

@@ -66,14 +66,16 @@ double packing_fraction_of(const Snapshot& snapshot, const std::vector<std::int6
   return measure::packing_fraction(snapshot.box, grains, hulls, {.n_points = 20000}).both.value;
 }
 
-/// P = P~ E / (2 - 2 nu^2) at P~ = 1 for nu = 0.40, 0, -0.52, with the published E = 0.58, 4.05, 8.30 k/d.
+/// P = P~ E / (2 - 2 nu^2) at P~ = 1 for nu = 0.40, 0, -0.52, with the published E = 0.58, 4.05, 8.30 k/d; for the softest also
+/// P~ = 4, where even the gaps between the rough surfaces of such small grains are gone.
 TEST(Extremes, CompressionUntilNoGapIsLeft) {
-  for (const auto& [alpha, pressure] : {std::pair(-0.8, 0.345), std::pair(2.0, 2.03), std::pair(12.0, 5.69)}) {
+  for (const auto& [alpha, pressure] : {std::pair(-0.8, 0.345), std::pair(-0.8, 1.38), std::pair(2.0, 2.03), std::pair(12.0, 5.69)}) {
     const Packing packing = grains_in(14.0, alpha);
     const Outcome outcome = run(packing, {compression(pressure)});
     ASSERT_FALSE(outcome.blow_up) << alpha << ": " << *outcome.blow_up;
     EXPECT_NEAR(outcome.totals.pressure, pressure, 0.03 * pressure) << alpha;
-    EXPECT_GT(packing_fraction_of(outcome.end, packing.first_nodes()), 0.97) << alpha; // published for large grains: 0.99 at P~ = 0.5
+    // Published for large grains: 0.99 at P~ = 0.5.
+    EXPECT_GT(packing_fraction_of(outcome.end, packing.first_nodes()), pressure < 0.4 ? 0.9 : 0.97) << alpha;
   }
 }
 
@@ -110,9 +112,12 @@ TEST(Extremes, FlipsEveryFewSteps) {
   EXPECT_LT(stepper.largest_stretch().ratio, 3.0);
 }
 
+/// Close to the limit at -1.00 short bonds collapse and their ends turn round at every step; that stays with a few nodes.
 TEST(Extremes, NextToTheLimitOfRigidity) {
-  const Outcome outcome = run(grains_in(14.0, -1.0), {compression(0.02), HoldStage{.time = 100.0}});
-  EXPECT_FALSE(outcome.blow_up) << *outcome.blow_up;
+  for (const double alpha : {-0.95, -1.0}) {
+    const Outcome outcome = run(grains_in(14.0, alpha), {compression(0.02), HoldStage{.time = 100.0}});
+    EXPECT_FALSE(outcome.blow_up) << alpha << ": " << *outcome.blow_up;
+  }
 }
 
 TEST(Extremes, ThirtyPercentOverlapAtTheStart) {
