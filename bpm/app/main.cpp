@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdio>
 #include <fmt/format.h>
+#include <hdf5.h>
 #include <new>
 #include <stdexcept>
 
@@ -77,6 +78,9 @@ int run_command(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
+  // A file that could not be written cannot be closed either: HDF5's own clean-up at the end would crash on it. Every file
+  // is closed by its owner.
+  H5dont_atexit();
   boba::shorten_thread_waiting(argv);
   try {
     for (const Sibling& sibling : siblings) {
