@@ -32,7 +32,7 @@ struct Options {
   std::vector<double> approaches, strains;
   std::string kinematics = "linear", law = "neo-hookean", curve;
   double exponent = 2;
-  int foam_terms = 1;
+  int foam_terms = 1, active_sets = most_active_sets;
   std::string ends = "bonded", against = "plates", interface = "rigid", formulation = "automatic", multigrid = "gamg",
               output;
   bool force = false, no_fields = false;
@@ -50,6 +50,8 @@ public:
         ->check(CLI::IsMember({"plates", "sphere"}));
     sphere_->add_option("--elements-across", options_.elements_across,
                         "elements across the contact radius, >= 8 (48; 10 in three dimensions)");
+    sphere_->add_option("--active-sets", options_.active_sets,
+                        "changes of the set of pressed nodes after which a load of linear kinematics has failed");
     cylinder_ = app.add_subcommand("cylinder", "a cylinder between two plates, held or sliding");
     common(*cylinder_);
     cylinder_->add_option("--height", options_.height, "height between the held ends")->required();
@@ -203,6 +205,7 @@ private:
     problem.finite_law = finite_law(warnings);
     problem.discretisation = discretisation();
     problem.elements_across = options_.elements_across.value_or(options_.dimension == 2 ? 48 : 10);
+    problem.max_active_sets = options_.active_sets;
     check(problem);
     if (options_.dimension == 3) {
       return run_in_three_dimensions(problem, problem.elements_across, warnings);

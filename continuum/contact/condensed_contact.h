@@ -35,12 +35,15 @@ public:
   using std::runtime_error::runtime_error;
 };
 
+/// Changes of the active set after which the search is given up.
+constexpr int most_active_sets = 200;
+
 /// Primal-dual active set (a semi-smooth Newton method) from a first guess of the active nodes.
 ///
 /// When a set comes back without being a solution the search goes on by single exchanges of least index, which ends
 /// for every positive definite A (Murty 1974). Throws NotSettled after max_iterations.
 /// Source: Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2003) 865; Murty, Opsearch 11 (1974) 138.
 ContactSolution solve(const CondensedContact& problem, const InterfaceLaw& interface, std::vector<bool> active,
-                      int max_iterations = 200);
+                      int max_iterations = most_active_sets);
 
 } // namespace boba::continuum

@@ -33,7 +33,7 @@ PlatePress::PlatePress(const MeridianBody& body, const Material& material, Bound
   compliance_ = solver_.condense(surface_.loads());
 }
 
-PressState PlatePress::press(double plate, const InterfaceLaw& interface) {
+PressState PlatePress::press(double plate, const InterfaceLaw& interface, int max_active_sets) {
   const Eigen::VectorXd rest = surface_.overlap(plate, Eigen::VectorXd::Zero(body_.n_unknowns()));
   if (guess_.empty()) {
     guess_.resize(std::size_t(rest.size()));
@@ -41,7 +41,7 @@ PressState PlatePress::press(double plate, const InterfaceLaw& interface) {
       guess_[i] = rest[Eigen::Index(i)] > 0;
     }
   }
-  const ContactSolution contact = solve({compliance_, surface_.area(), rest}, interface, guess_);
+  const ContactSolution contact = solve({compliance_, surface_.area(), rest}, interface, guess_, max_active_sets);
   guess_ = contact.active;
   PressState state;
   state.pressure = contact.pressure;

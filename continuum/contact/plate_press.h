@@ -28,7 +28,7 @@ public:
 
   const ContactSurface& surface() const { return surface_; }
   /// Equilibrium with the plate at height `plate`. Throws NotSettled. The last state's active set is the first guess.
-  PressState press(double plate, const InterfaceLaw& interface);
+  PressState press(double plate, const InterfaceLaw& interface, int max_active_sets);
 
 private:
   const MeridianBody& body_;

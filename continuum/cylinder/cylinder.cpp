@@ -66,7 +66,7 @@ void solve_layered(const CylinderProblem& problem, CylinderResult& result) {
     const auto begin = Clock::now();
     CylinderLoad load;
     load.strain = strain;
-    const PressState state = press.press(problem.height / 2 * (1 - strain), problem.interface);
+    const PressState state = press.press(problem.height / 2 * (1 - strain), problem.interface, most_active_sets);
     load.displacement = state.displacement;
     load.force = state.force;
     describe(load, problem, *result.body);

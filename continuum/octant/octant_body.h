@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "continuum/contact/condensed_contact.h"
 #include "continuum/elasticity/material.h"
 #include "continuum/elasticity/meridian_body.h"
 #include "continuum/octant/duration.h"
@@ -48,8 +49,9 @@ public:
   /// The end moved by -shortening / 2; bonded: u_x = u_y = 0 there. Throws NotSettled.
   OctantSolution solve_held(const Material& material, double shortening, bool bonded);
   /// A rigid frictionless plate at height `plate`; first_radius: first guess of the contact.
-  /// Throws NotSettled when the active set does not settle.
-  OctantSolution press(const Material& material, double plate, double first_radius);
+  /// Throws NotSettled, with the last residuals, when the active set still changes after max_active_sets solutions.
+  OctantSolution press(const Material& material, double plate, double first_radius,
+                       int max_active_sets = most_active_sets);
   /// The displacement given on the whole boundary apart from the mirrors, under a body force (force per volume).
   OctantSolution solve_prescribed(const Material& material,
                                   const std::function<Eigen::Vector3d(const Eigen::Vector3d&)>& value,

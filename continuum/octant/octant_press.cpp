@@ -13,7 +13,6 @@ namespace {
 
 using Vector = OctantSystem::Vector;
 
-constexpr int max_active_set = 40;
 /// While the set still changes, the displacement need not be right to the last digit.
 constexpr double search_tolerance = 1e-5;
 constexpr double final_tolerance = 1e-9;
@@ -35,20 +34,34 @@ std::vector<Node> nodes_of(const OctantSystem& system, double first_radius) {
   return nodes;
 }
 
-/// Flips the nodes whose state contradicts the solution; returns how many there were on all ranks.
-int flip_contradictions(const OctantSystem& system, std::vector<Node>& nodes, const Vector& forces, double plate) {
+/// Nodes of all ranks whose state contradicted the solution, and by how much at most.
+struct Contradictions {
+  int nodes;
+  /// Pressure that pulls, and overlap of a free node.
+  double pull, overlap;
+};
+
+/// Flips the nodes whose state contradicts the solution.
+Contradictions flip_contradictions(const OctantSystem& system, std::vector<Node>& nodes, const Vector& forces, double plate) {
   double total = 0;
   for (const Node& node : nodes) {
     total += node.active ? std::abs(forces[node.row]) : 0;
   }
   total = dealii::Utilities::MPI::sum(total, system.communicator);
-  int changed = 0;
+  Contradictions found{0, 0, 0};
   for (Node& node : nodes) {
-    const bool next = node.active ? forces[node.row] < 1e-9 * total : node.z + system.u[node.row] > plate;
-    changed += next != node.active;
+    const double pull = forces[node.row], overlap = node.z + system.u[node.row] - plate;
+    const bool next = node.active ? pull < 1e-9 * total : overlap > 0;
+    if (next != node.active) {
+      ++found.nodes;
+      found.pull = std::max(found.pull, node.active ? pull / node.area : 0);
+      found.overlap = std::max(found.overlap, node.active ? 0 : overlap);
+    }
     node.active = next;
   }
-  return dealii::Utilities::MPI::sum(changed, system.communicator);
+  return {dealii::Utilities::MPI::sum(found.nodes, system.communicator),
+          dealii::Utilities::MPI::max(found.pull, system.communicator),
+          dealii::Utilities::MPI::max(found.overlap, system.communicator)};
 }
 
 /// Radius and pressure of the pressed nodes of all ranks, sorted by radius.
@@ -72,7 +85,7 @@ std::vector<ProfilePoint> pressures_of(const OctantSystem& system, const std::ve
 
 } // namespace
 
-OctantSolution OctantBody::press(const Material& material, double plate, double first_radius) {
+OctantSolution OctantBody::press(const Material& material, double plate, double first_radius, int max_active_sets) {
   OctantSolution solution;
   assemble(material, solution);
   const OctantSystem& system = *system_;
@@ -92,8 +105,8 @@ OctantSolution OctantBody::press(const Material& material, double plate, double 
     solution.solve += effort.solve;
     const Vector forces = system.forces();
     const std::vector<Node> solved = nodes;
-    const int changed = flip_contradictions(system, nodes, forces, plate);
-    if (changed == 0 && tolerance <= final_tolerance) {
+    const Contradictions left = flip_contradictions(system, nodes, forces, plate);
+    if (left.nodes == 0 && tolerance <= final_tolerance) {
       double quarter = 0;
       for (const Node& node : solved) {
         quarter -= node.active ? forces[node.row] : 0;
@@ -112,11 +125,12 @@ OctantSolution OctantBody::press(const Material& material, double plate, double 
       finish(solution);
       return solution;
     }
-    if (solution.active_set_iterations == max_active_set) {
-      throw NotSettled(fmt::format("the active set did not settle in {} iterations: {} nodes still change",
-                                   max_active_set, changed));
+    if (left.nodes > 0 && solution.active_set_iterations >= max_active_sets) {
+      throw NotSettled(fmt::format("the active set did not settle in {} iterations: {} nodes contradict it, lowest "
+                                   "pressure {:.3e}, largest overlap {:.3e}",
+                                   max_active_sets, left.nodes, -left.pull, left.overlap));
     }
-    tolerance = changed == 0 ? final_tolerance : tolerance;
+    tolerance = left.nodes == 0 ? final_tolerance : tolerance;
   }
 }
 

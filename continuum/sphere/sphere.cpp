@@ -31,12 +31,12 @@ struct Stage {
   double plate;
 
   const ContactSurface& surface() const { return finite ? finite->surface() : linear->surface(); }
-  PressState press(double height, const InterfaceLaw& interface) {
+  PressState press(double height, const SphereProblem& problem) {
     if (!finite) {
-      return linear->press(height, interface);
+      return linear->press(height, problem.interface, problem.max_active_sets);
     }
     const double from = plate;
-    PressState state = finite->press(from, height, interface);
+    PressState state = finite->press(from, height, problem.interface);
     plate = height;
     return state;
   }
@@ -118,7 +118,7 @@ private:
 
   SphereLoad solved(double approach) {
     SphereLoad load;
-    const PressState state = stage_->press(problem_.radius - approach / 2, problem_.interface);
+    const PressState state = stage_->press(problem_.radius - approach / 2, problem_);
     const ContactSurface& surface = stage_->surface();
     load.approach = approach;
     load.hertz = hertz(problem_.radius, problem_.material, approach / 2);
@@ -192,6 +192,10 @@ void check(const SphereProblem& problem) {
     throw std::invalid_argument(
         fmt::format("elements-across = {} is not allowed: it must lie in [8, 4096] elements across the contact radius",
                     problem.elements_across));
+  }
+  if (problem.max_active_sets < 1) {
+    throw std::invalid_argument(
+        fmt::format("active-sets = {} is not allowed: it must be at least 1", problem.max_active_sets));
   }
 }
 

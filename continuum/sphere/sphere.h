@@ -14,6 +14,8 @@ struct SphereProblem : CompressedBody {
   std::vector<double> approaches;
   /// Elements across the contact radius at its edge; at least 8.
   double elements_across = 48;
+  /// Changes of the set of pressed nodes after which a load has failed; at least 1.
+  int max_active_sets = most_active_sets;
 };
 
 struct SphereLoad : CompressionLoad {
