@@ -62,7 +62,8 @@ json run_octant(const SphereProblem& problem, const OctantChoice& choice, json p
                       std::min(1.1 * guess.contact_radius, 0.9 * problem.radius), choice.elements_across);
     shape.refinements = choice.refinements;
     OctantBody body(shape, problem.discretisation, choice.multigrid);
-    const OctantSolution solution = body.press(problem.material, problem.radius - approach / 2, guess.contact_radius, problem.max_active_sets);
+    const OctantSolution solution =
+        body.press(problem.material, problem.radius - approach / 2, guess.contact_radius, problem.max_active_sets);
     json load = common(solution);
     load["approach"] = approach;
     load["contact_radius"] = solution.contact_radius;

@@ -42,7 +42,8 @@ struct Contradictions {
 };
 
 /// Flips the nodes whose state contradicts the solution.
-Contradictions flip_contradictions(const OctantSystem& system, std::vector<Node>& nodes, const Vector& forces, double plate) {
+Contradictions flip_contradictions(const OctantSystem& system, std::vector<Node>& nodes, const Vector& forces,
+                                   double plate) {
   double total = 0;
   for (const Node& node : nodes) {
     total += node.active ? std::abs(forces[node.row]) : 0;

@@ -10,6 +10,7 @@
 
 namespace {
 
+using boba::test::content_of;
 using boba::test::ProgramResult;
 
 class Program : public ::testing::Test {
@@ -74,8 +75,8 @@ TEST_F(Program, TellsWrongInputFromFailure) {
 TEST_F(Program, AnActiveSetThatDoesNotSettleFailsWithItsResiduals) {
   // Before the second change of the set some nodes pull or stick through the plate.
   for (const char* more : {"", " --dimension 3 --refinements 1 --elements-across 8"}) {
-    const ProgramResult result = result_of(
-        std::string("sphere --radius 1 --young 1 --poisson 0.25 --approach 0.02 --active-sets 1") + more);
+    const ProgramResult result =
+        result_of(std::string("sphere --radius 1 --young 1 --poisson 0.25 --approach 0.02 --active-sets 1") + more);
     EXPECT_EQ(result.exit_code, 1) << more;
     for (const char* part : {"active set did not settle in 1 iterations", "nodes contradict it", "largest overlap"}) {
       EXPECT_EQ(count(result.err, part), 1) << part << " in: " << result.err;
