@@ -5,30 +5,67 @@
 #include "tests/comparison/comparison_case.h"
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <memory>
+#include <vector>
 
 namespace boba::calibration {
 namespace {
 
-double force_error(int n_nodes, int samples) {
-  ComparisonSettings settings = comparison_case(0.0, {0.1}, "resolution");
+/// Mean force at approach / R = 0.1 over that of the continuum with the layer, of the spheres of one resolution.
+struct Level {
+  int n_nodes = 0, samples = 0;
+  double inverse_radius = 0.0; ///< d / R of the solid
+  double ratio = 0.0, error = 0.0;
+  double to_rigid = 0.0; ///< the same over the rigid plate's
+};
+
+Level level_of(int n_nodes, int samples) {
+  ComparisonSettings settings = comparison_case(0.0, {0.05, 0.1}, "resolution");
+  settings.bulk = test_box(4000);
   settings.n_nodes = n_nodes;
   settings.samples = samples;
   const auto document = compare_sphere(settings);
   std::filesystem::remove_all(settings.folder);
   const auto& force = row_of(document, "walls", 0.1, "force");
-  return force.at("particles").get<double>() / force.at("continuum").at("finite_layer").get<double>() - 1.0;
+  const double mean = force.at("particles"), layer = force.at("continuum").at("finite_layer");
+  // Bodies of one resolution scatter by 5 % at 5137 nodes and elsewhere like the inverse root of the number of nodes in
+  // contact.
+  const double scatter = 0.05 * std::cbrt(5137.0 / n_nodes);
+  const Level level{.n_nodes = n_nodes,
+                    .samples = samples,
+                    .inverse_radius = 1.0 / document.at("cases")[0].at("surface").at("body_radius").get<double>(),
+                    .ratio = mean / layer,
+                    .error = samples > 3 ? force.at("particles_error").get<double>() / layer
+                                         : scatter / std::sqrt(double(samples)),
+                    .to_rigid = mean / force.at("continuum").at("finite").get<double>()};
+  fmt::print("{} nodes, {} bodies: F over the layer's {:.3f} +- {:.3f}, over the rigid plate's {:.3f}\n", n_nodes,
+             samples, level.ratio, level.error, level.to_rigid);
+  std::fflush(stdout);
+  return level;
 }
 
-TEST(Resolution, MoreNodesBringTheForceCloserToTheContinuum) {
-  const double coarse = force_error(1000, 4), fine = force_error(20000, 1);
-  fmt::print("force over the continuum's at approach / R = 0.1: {:+.3f} at 1000 nodes, {:+.3f} at 20000\n", coarse,
-             fine);
-  EXPECT_LT(std::abs(fine), 0.08);
-  EXPECT_LT(std::abs(fine), std::abs(coarse));
+/// The layer is as thick in d for every R, so the continuum with the layer tends to the rigid plate: the limit of the
+/// particles' force over the layer's is the limit of their force over the rigid plate's, without the slow (d/R)^0.65
+/// by which each of the two comes up. A weighted straight line in d / R. Tolerance: 5 % and the line's standard error.
+TEST(Resolution, ExtrapolatedTheForceIsTheRigidPlates) {
+  const std::vector<Level> levels = {level_of(1000, 16), level_of(5137, 12), level_of(20000, 1)};
+  double w = 0, wx = 0, wxx = 0, wy = 0, wxy = 0;
+  for (const Level& level : levels) {
+    const double weight = std::pow(level.error, -2), x = level.inverse_radius;
+    w += weight, wx += weight * x, wxx += weight * x * x, wy += weight * level.ratio, wxy += weight * x * level.ratio;
+  }
+  const double determinant = w * wxx - wx * wx, limit = (wy * wxx - wxy * wx) / determinant,
+               error = std::sqrt(wxx / determinant);
+  expect_near(fmt::format("force over the rigid plate's for d / R = 0 (standard error {:.3f})", error), limit, 1.0,
+              0.05 + error);
+  const Level& middle = levels[1];
+  expect_near("mean force of twelve bodies of 5137 nodes over the layer's", middle.ratio, 1.0, 0.05);
+  EXPECT_LT(levels[0].to_rigid, middle.to_rigid);
+  EXPECT_LT(middle.to_rigid, levels[2].to_rigid);
 }
 
 /// Node i and its image touch at the plane between them, as at a wall; some nodes touch a neighbour's image too.
