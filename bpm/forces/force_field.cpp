@@ -65,7 +65,8 @@ void ForceField::find_near(ContactPair& pair, const Box& box) {
 }
 
 void ForceField::contacts_between(ContactPair& pair, const Box& box, const Evaluation& what) {
-  const kernels::ContactParameters parameters = {material_.k, material_.k3, material_.gamma, material_.diameter};
+  const kernels::ContactParameters parameters = {material_.k, material_.k3, material_.gamma, material_.diameter,
+                                                 material_.hertz_modulus};
   thread_local std::vector<kernels::Touch> touches;
   thread_local std::vector<kernels::ContactNode> rows;
   const auto room = static_cast<std::size_t>(kernels::touch_room(static_cast<std::int64_t>(pair.near.size())));

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 
@@ -130,10 +131,21 @@ GrainTemplate build_walled(const TemplateSpec& spec, Random& random) {
                                        canonical_text(spec), wall_attempts, reason));
 }
 
+/// One node is a whole sphere: it stands for the volume of a sphere of diameter d.
+GrainTemplate single_node() {
+  GrainTemplate grain;
+  grain.position = {Vector3d::Zero()};
+  grain.reference_volume = std::numbers::pi / 6.0;
+  return grain;
+}
+
 } // namespace
 
 GrainTemplate build_template(const TemplateSpec& spec) {
   validate(spec);
+  if (is_single_node(spec)) {
+    return single_node();
+  }
   Random random(spec.seed);
   if (spec.shape == Shape::periodic_box) {
     return build_periodic(spec, random);

@@ -77,6 +77,10 @@ Surface surface_from_string(const std::string& word) {
   throw std::invalid_argument(fmt::format("grain template: surface = \"{}\" is not one of cut, wall", word));
 }
 
+bool is_single_node(const TemplateSpec& spec) {
+  return spec.shape == Shape::sphere && spec.n_nodes == 1;
+}
+
 void validate(const TemplateSpec& spec) {
   constexpr double longest = 1e4;
   if (is_box(spec.shape)) {
@@ -94,6 +98,9 @@ void validate(const TemplateSpec& spec) {
   }
   require_between("density", spec.density, 1.0, 2.0);
   require_between("bond_cutoff", spec.bond_cutoff, 1.1, 2.5);
+  if (is_single_node(spec)) {
+    return;
+  }
   if (spec.n_nodes) {
     require_between("n_nodes", *spec.n_nodes, smallest_grain, largest_grain);
   } else {

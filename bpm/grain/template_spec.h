@@ -36,6 +36,9 @@ struct TemplateSpec {
   double density = 1.226;   ///< of the bulk arrangement
 };
 
+/// True for a sphere of one node: a rigid sphere of diameter d, without bonds.
+bool is_single_node(const TemplateSpec& spec);
+
 /// Throws std::invalid_argument (member, value, what is allowed) when the specification makes no sense.
 void validate(const TemplateSpec& spec);
 

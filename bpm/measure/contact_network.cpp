@@ -78,7 +78,9 @@ private:
       if (!(r < material_.diameter)) {
         continue;
       }
-      const double force = contact_force(material_.k, material_.k3, 0.0, material_.diameter, r, 0.0);
+      const double force = material_.hertz_modulus > 0.0
+                               ? hertz_force(material_.hertz_modulus, 0.0, material_.diameter, r, 0.0)
+                               : contact_force(material_.k, material_.k3, 0.0, material_.diameter, r, 0.0);
       contact.force += force * (r > 0.0 ? Vector3(from_other / r) : Vector3(Vector3::Zero()));
       contact.largest_overlap = std::max(contact.largest_overlap, material_.diameter - r);
       midpoints.push_back(own[pair.i] - 0.5 * from_other);

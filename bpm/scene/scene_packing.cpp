@@ -160,6 +160,9 @@ void check_time_step(const Scene& scene, const std::optional<PackingStep>& stabl
 }
 
 std::optional<double> effective_modulus(const Packing& packing, const Material& material, const PoissonTable& table) {
+  if (material.hertz_modulus > 0.0) {
+    return material.hertz_modulus;
+  }
   double sum = 0.0, nodes = 0.0;
   for (int g = 0; g < packing.n_grains(); ++g) {
     const std::optional<double> modulus = table.effective_modulus(packing.grains[g].alpha, material.k);

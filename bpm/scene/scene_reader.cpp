@@ -162,6 +162,19 @@ void read_templates(const SceneTables& tables, Scene& scene) {
   }
 }
 
+/// Hertz's law is for two whole spheres, not for nodes of a network; and it has no wall.
+void check_hertz(const SceneTables& tables, const Scene& scene) {
+  if (scene.material.hertz_modulus == 0.0) {
+    return;
+  }
+  const bool spheres = !scene.templates.empty() &&
+                       std::all_of(scene.templates.begin(), scene.templates.end(),
+                                   [](const SceneTemplate& t) { return is_single_node(t.spec); });
+  if (!spheres) {
+    tables.table("material").fail("hertz_modulus", "is for spheres of one node: every [[template]] needs nodes = 1");
+  }
+}
+
 int template_of_species(const SceneTable& table, const Scene& scene) {
   std::vector<std::string> names;
   for (const SceneTemplate& t : scene.templates) {
@@ -276,8 +289,10 @@ Scene read_tree(const std::string& text, const std::filesystem::path& path, cons
   scene.material.k = material.real("k", scene.material.k);
   scene.material.gamma = material.real("gamma", scene.material.gamma);
   scene.material.k3 = material.real("k3", scene.material.k3);
+  scene.material.hertz_modulus = material.real("hertz_modulus", 0.0);
   read_measures(tables, scene);
   read_templates(tables, scene);
+  check_hertz(tables, scene);
   read_species(tables, scene);
   read_start(tables, scene, must_exist);
   scene.stages = read_stages(tables, scene);

@@ -81,6 +81,23 @@ inline std::int64_t touching_rows(const ContactCandidates& c, double diameter, C
   return n;
 }
 
+/// Hertz's law lane by lane: spheres of one node have few contacts. Rounding may put a distance just beyond touch.
+inline Wide hertz_forces(const ContactParameters& p, Wide r, Wide normal_velocity) {
+  Wide f{};
+  for (int l = 0; l < native_lanes; ++l) {
+    const double at = r[l] < p.diameter ? r[l] : p.diameter;
+    f[l] = boba::hertz_force(p.hertz_modulus, p.gamma, p.diameter, at, static_cast<double>(normal_velocity[l]));
+  }
+  return f;
+}
+inline Wide hertz_energies(const ContactParameters& p, Wide r) {
+  Wide energy{};
+  for (int l = 0; l < native_lanes; ++l) {
+    energy[l] = boba::hertz_energy(p.hertz_modulus, p.diameter, r[l] < p.diameter ? r[l] : p.diameter);
+  }
+  return energy;
+}
+
 /// Forces of as many touches as a register holds, and their share of the sums.
 struct TouchSums {
   Wide virial[6]{}, smallest_r2, potential{};
@@ -95,7 +112,10 @@ inline void evaluate_touches(const ContactNode* rows, const ContactParameters& p
   }
   const Wide r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
   const Wide inverse_r = inverse_sqrt(r2), r = r2 * inverse_r;
-  const Wide s = boba::contact_force(p.k, p.k3, p.gamma, p.diameter, r, approach * inverse_r) * inverse_r;
+  const bool hertz = p.hertz_modulus > 0.0;
+  const Wide s = (hertz ? hertz_forces(p, r, approach * inverse_r)
+                        : boba::contact_force(p.k, p.k3, p.gamma, p.diameter, r, approach * inverse_r)) *
+                 inverse_r;
   const Wide force[3] = {s * d[0], s * d[1], s * d[2]};
   for (int l = 0; l < native_lanes; ++l) {
     for (int c = 0; c < 3; ++c) {
@@ -108,7 +128,7 @@ inline void evaluate_touches(const ContactNode* rows, const ContactParameters& p
     sums.virial[c] += terms[c];
   }
   sums.smallest_r2 = r2 < sums.smallest_r2 ? r2 : sums.smallest_r2;
-  sums.potential += boba::contact_energy(p.k, p.k3, p.diameter, r);
+  sums.potential += hertz ? hertz_energies(p, r) : boba::contact_energy(p.k, p.k3, p.diameter, r);
 }
 
 /// The sums follow from the touches alone, whatever other candidates there were.

@@ -114,6 +114,7 @@ struct ContactCandidates {
 
 struct ContactParameters {
   double k, k3, gamma, diameter;
+  double hertz_modulus; ///< above 0: Hertz's law instead of k and k3
 };
 
 /// Touches and rows that a loop over n candidates may write: one beyond, rounded up to full registers.

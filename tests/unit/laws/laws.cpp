@@ -73,6 +73,32 @@ TEST(ContactLaw, ForceIsMinusGradientOfEnergy) {
   }
 }
 
+// Hertz in its textbook form, F = 4/3 E* sqrt(R*) overlap^(3/2), 1/E* = 2 (1 - nu^2) / E, 1/R* = 2/R.
+TEST(HertzLaw, IsTheTextbooksForTwoEqualSpheres) {
+  const double E = 3.0, nu = 0.3, radius = 0.8, overlap = 0.05;
+  const double e_star = 1.0 / (2.0 * (1.0 - nu * nu) / E), r_star = 0.5 * radius;
+  EXPECT_NEAR(hertz_force(E / (2.0 - 2.0 * nu * nu), 1.0, 2.0 * radius, 2.0 * radius - overlap, 0.0),
+              4.0 / 3.0 * e_star * std::sqrt(r_star) * std::pow(overlap, 1.5), 1e-14);
+}
+
+TEST(HertzLaw, ForceIsMinusGradientOfEnergyAndStiffnessItsSlope) {
+  const double h = 1e-6;
+  for (const double r : {0.7, 0.95, 0.999}) {
+    const double slope = (hertz_energy(2.0, 1.0, r + h) - hertz_energy(2.0, 1.0, r - h)) / (2.0 * h);
+    EXPECT_NEAR(hertz_force(2.0, 0.0, 1.0, r, 0.0), -slope, 1e-8);
+    const double softening = hertz_force(2.0, 0.0, 1.0, r + h, 0.0) - hertz_force(2.0, 0.0, 1.0, r - h, 0.0);
+    EXPECT_NEAR(hertz_stiffness(2.0, 1.0, r), -softening / (2.0 * h), 1e-5);
+  }
+}
+
+// Two unit masses on a spring K move against each other with the reduced mass 1/2: critical damping is 2 sqrt(K / 2).
+TEST(HertzLaw, DampsCriticallyAtGammaOne) {
+  const double r = 0.99, K = hertz_stiffness(2.0, 1.0, r);
+  const double damping = hertz_force(2.0, 1.0, 1.0, r, 0.0) - hertz_force(2.0, 1.0, 1.0, r, 1.0);
+  EXPECT_NEAR(damping, 2.0 * std::sqrt(0.5 * K), 1e-14);
+  EXPECT_EQ(hertz_force(2.0, 1.0, 1.0, 1.0, 5.0), 0.0);
+}
+
 TEST(WallLaw, IsTheContactWithOnesMirrorImage) {
   EXPECT_EQ(wall_force(1.0, 50.0, 1.0, 1.0, 0.45, -0.1), contact(0.9, -0.2));
   EXPECT_EQ(wall_force(1.0, 50.0, 1.0, 1.0, 0.5, 0.0), 0.0);

@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws figures 2 to 4, S1 to S4 and the compaction from the tables alone: figures.py RESULTS RUNS.csv FOLDER."""
+import csv
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+POISSON = {"-0.8": 0.4, "0": 0.25, "2": 0.0, "5": -0.25, "12": -0.5}
+COLOURS = {"-0.8": "#1b6ca8", "0": "#2a9d8f", "2": "#7a9e2e", "5": "#d98e04", "12": "#c1121f"}
+SPHERE_RADIUS = 10.0
+
+
+class Results:
+    """Rows of the tables, found by run; `plan` is runs.csv."""
+
+    def __init__(self, folder, plan):
+        self.plan = {row["name"]: row for row in csv.DictReader(open(plan))}
+        self.tables = {path.stem: list(csv.DictReader(path.open())) for path in pathlib.Path(folder).glob("*.csv")}
+
+    def rows(self, table, name, **equal):
+        return [row for row in self.tables.get(table, []) if row["name"] == name and
+                all(row[key] == value for key, value in equal.items())]
+
+    def columns(self, table, name, *names, **equal):
+        rows = [row for row in self.rows(table, name, **equal) if all(row[column] != "" for column in names)]
+        return [np.array([float(row[column]) for row in rows]) for column in names]
+
+    def runs(self, **equal):
+        """Names of the planned runs with these parameters, in the plan's order."""
+        return [name for name, row in self.plan.items() if all(row[key] == str(value) for key, value in equal.items())]
+
+    def reached(self, name):
+        rows = self.rows("summary", name)
+        return float(rows[0]["strain"]) if rows else 0.0
+
+    def longest(self, alpha, nodes="300"):
+        """Of one alpha's runs with the most grains the one with the largest strain; None when there is none."""
+        names = [name for name in self.runs(scene="shear", alpha=alpha, nodes=nodes) if self.rows("structure", name)]
+        return max(names, key=lambda name: (int(self.plan[name]["grains"]), self.reached(name)), default=None)
+
+
+def label(alpha):
+    return rf"$\nu$ = {POISSON[alpha]:g}"
+
+
+def save(figure, folder, name):
+    figure.tight_layout()
+    figure.savefig(folder / f"{name}.png", dpi=100)
+    plt.close(figure)
+
+
+def compaction_figure(results, folder):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6))
+    for alpha, colour in COLOURS.items():
+        for k, name in enumerate(results.runs(scene="compaction", alpha=alpha)):
+            phi, pressure, ratio = results.columns("compaction", name, "phi", "P", "phi_reference")
+            left.plot(phi, pressure, color=colour, lw=1, label=None if k else label(alpha))
+            right.plot(ratio, pressure, color=colour, lw=1)
+    left.set_xlabel(r"packing fraction $\phi$ (Monte Carlo)")
+    right.set_xlabel("undeformed hull volume of all grains / volume of the cell")
+    for axes in (left, right):
+        axes.set_yscale("log")
+        axes.set_ylim(1e-5, 1)
+        axes.set_ylabel(r"$\tilde P$")
+    left.legend(fontsize=8)
+    save(figure, folder, "compaction")
+
+
+def spectra(results, axes, column, chosen):
+    """Curves of S(q) or P_F(q): chosen is a list of (run, kind, value, colour, style, label)."""
+    for name, value, colour, style, text in chosen:
+        q, y = results.columns("scattering", name, "q", column, value=value)
+        if len(q):
+            axes.plot(q, y, style, color=colour, lw=1.2, label=text)
+    axes.set_xlabel("q (1/d)")
+
+
+def pressure_curves(results, alpha="-0.8"):
+    name = next(iter(results.runs(scene="compaction", alpha=alpha)), None)
+    values = ["0.01", "0.03", "0.1", "0.2", "0.5"]
+    colours = plt.cm.viridis(np.linspace(0, 0.9, len(values)))
+    return [(name, v, c, "-", rf"$\tilde P$ = {v}") for v, c in zip(values, colours)]
+
+
+def strain_curves(results):
+    chosen = []
+    for alpha in ("-0.8", "2", "12"):
+        for nodes in ("5137", "300"):
+            name = results.longest(alpha, nodes)
+            if name and results.rows("scattering", name, value="3.2"):
+                chosen += [(name, "0.0", COLOURS[alpha], "--", None),
+                           (name, "3.2", COLOURS[alpha], "-", f"{label(alpha)}, {nodes} nodes")]
+                break
+    return chosen
+
+
+def figure_2(results, folder):
+    figure, (upper, lower) = plt.subplots(2, 1, figsize=(4.6, 6))
+    spectra(results, upper, "structure", pressure_curves(results))
+    upper.set_title(r"(a) compaction, $\nu$ = 0.4", fontsize=10, loc="left")
+    spectra(results, lower, "structure", strain_curves(results))
+    lower.set_title(r"(b) $\tilde P$ = 0.1; dashed: strain 0, solid: 3.2", fontsize=10, loc="left")
+    for axes in (upper, lower):
+        axes.set_ylabel("S(q)")
+        axes.set_xlim(0.15, 2)
+        axes.legend(fontsize=7)
+    save(figure, folder, "figure_2")
+
+
+def sphere_form_factor(q, n, radius):
+    x = q * radius
+    return n * (3 * (np.sin(x) - x * np.cos(x)) / x**3) ** 2
+
+
+def figure_s1(results, folder):
+    figure, (upper, lower) = plt.subplots(2, 1, figsize=(4.6, 6))
+    spectra(results, upper, "form_factor", pressure_curves(results))
+    q = np.linspace(0.1, 2, 400)
+    radius = SPHERE_RADIUS * (300 / 5137) ** (1 / 3)
+    upper.plot(q, sphere_form_factor(q, 300, radius), "k--", lw=1, label=f"sphere, R = {radius:.2f} d")
+    upper.set_title(r"(a) compaction, $\nu$ = 0.4", fontsize=10, loc="left")
+    spectra(results, lower, "form_factor", strain_curves(results))
+    lower.set_title(r"(b) $\tilde P$ = 0.1; dashed: strain 0, solid: 3.2", fontsize=10, loc="left")
+    for axes in (upper, lower):
+        axes.set_yscale("log")
+        axes.set_ylim(1e-1, None)
+        axes.set_ylabel(r"$P_F(q)$")
+        axes.set_xlim(0.15, 2)
+        axes.legend(fontsize=7)
+    save(figure, folder, "figure_S1")
+
+
+def histogram(results, axes, name, quantity, window, style, colour):
+    centre, count = results.columns("distributions", name, "centre", "count", quantity=quantity, window=window)
+    if not len(centre):
+        return
+    step = {"volume": 0.02, "asphericity": 0.01}.get(quantity, 1.0)
+    grid = np.arange(round((centre.max() - centre.min()) / step) + 3) * step + centre.min() - step
+    full = np.zeros(len(grid))
+    full[np.rint((centre - grid[0]) / step).astype(int)] = count / count.sum() / step
+    axes.plot(grid, full, style, color=colour, lw=1.2, drawstyle="steps-mid")
+
+
+def figure_3(results, folder):
+    figure, axes = plt.subplots(2, 2, figsize=(9, 6), width_ratios=(3, 2))
+    for alpha in ("-0.8", "2", "12"):
+        name = results.longest(alpha)
+        if not name:
+            continue
+        colour = COLOURS[alpha]
+        for row, (mean, deviation, trace) in enumerate(
+                (("volume_mean_d3", "volume_deviation_d3", "volume_d3"),
+                 ("asphericity_mean", "asphericity_deviation", "asphericity"))):
+            strain, m, s = results.columns("structure", name, "strain", mean, deviation)
+            axes[row, 0].fill_between(strain, m - s, m + s, color=colour, alpha=0.25, lw=0)
+            axes[row, 0].plot(strain, m, color=colour, lw=1.3, label=label(alpha))
+            axes[row, 0].plot(*results.columns("traces", name, "strain", trace), "--", color=colour, lw=0.5)
+            for window, style in (("early", ":"), ("late", "-")):
+                histogram(results, axes[row, 1], name, ("volume", "asphericity")[row], window, style, colour)
+    for k, text in enumerate(("hull volume (d^3)", "asphericity")):
+        axes[k, 0].set_xlabel("strain")
+        axes[k, 0].set_xscale("symlog", linthresh=1)
+        axes[k, 0].set_ylabel(text)
+        axes[k, 1].set_xlabel(("hull volume / undeformed", "asphericity")[k])
+        axes[k, 1].set_ylabel("probability density")
+        axes[k, 1].set_title(f"({'bd'[k]}) dotted: strain 2 to 4.5, solid: last fifth", fontsize=9, loc="left")
+        axes[k, 0].set_title(f"({'ac'[k]})", fontsize=9, loc="left")
+    axes[0, 0].legend(fontsize=8)
+    save(figure, folder, "figure_3")
+
+
+def window_mean(results, name, column, low, high):
+    strain, values = results.columns("structure", name, "strain", column)
+    inside = (strain > low) & (strain < high)
+    return values[inside].mean() if inside.any() else np.nan
+
+
+def figure_4(results, folder):
+    figure = plt.figure(figsize=(10, 7))
+    grid = figure.add_gridspec(5, 3, width_ratios=(1.1, 1.2, 1.2))
+    shares, twelve = figure.add_subplot(grid[:2, 0]), figure.add_subplot(grid[3:, 0])
+    positions = np.arange(5)
+    for shift, window in ((-0.2, "early"), (0.2, "late")):
+        for k, alpha in enumerate(COLOURS):
+            name = results.longest(alpha)
+            if not name:
+                continue
+            end = results.reached(name)
+            low, high = (2.0, 4.5) if window == "early" else (0.8 * end, end + 1)
+            share = window_mean(results, name, "faceted_share", low, high)
+            shares.bar(k + shift, share, 0.36, color="#4c956c", alpha=1 if shift > 0 else 0.5)
+            shares.bar(k + shift, 1 - share, 0.36, bottom=share, color="#8d6a9f", alpha=1 if shift > 0 else 0.5)
+            twelve.plot(POISSON[alpha], window_mean(results, name, "twelve_facets_share", low, high),
+                        "o" if shift > 0 else "s", color=COLOURS[alpha], mfc=None if shift > 0 else "white")
+    shares.set_xticks(positions, [f"{POISSON[a]:g}" for a in COLOURS])
+    shares.set_ylabel("share of the surface")
+    shares.set_xlabel(r"$\nu$")
+    shares.set_title("(a) facets (green), curved (purple)\nlight: strain 2 to 4.5, full: last fifth", fontsize=8,
+                     loc="left")
+    twelve.set_xlabel(r"$\nu$")
+    twelve.set_ylabel("grains with 12 facets")
+    twelve.set_ylim(0, None)
+    twelve.set_title("(c) open: strain 2 to 4.5, full: last fifth", fontsize=8, loc="left")
+    for k, alpha in enumerate(COLOURS):
+        name = results.longest(alpha)
+        for column, window in ((1, "early"), (2, "late")):
+            axes = figure.add_subplot(grid[k, column])
+            if name:
+                centre, count = results.columns("distributions", name, "centre", "count", quantity="facets",
+                                                window=window)
+                ordered = 1 - window_mean(results, name, "disordered", 2.0 if column == 1 else
+                                          0.8 * results.reached(name), 4.5 if column == 1 else 1e9)
+                if len(centre):
+                    axes.bar(centre, count / count.sum(), 0.85, color="#e76f51" if ordered > 0.5 else "#2a9d8f")
+            axes.axvline(12, color="k", lw=0.5, ls=":")
+            axes.set_xlim(3.5, 45.5)
+            axes.tick_params(labelsize=7)
+            if column == 1:
+                axes.set_ylabel(label(alpha), fontsize=8)
+            if k == 0:
+                axes.set_title(("(b) strain 2 to 4.5", "last fifth; orange: ordered")[column - 1], fontsize=8,
+                               loc="left")
+    figure.axes[-1].set_xlabel("facets of a grain (robust rule)", fontsize=8)
+    save(figure, folder, "figure_4")
+
+
+def figure_s2(results, folder):
+    figure, axes = plt.subplots(figsize=(5.5, 3.8))
+    for alpha, colour in COLOURS.items():
+        names = [n for n in results.runs(scene="shear", alpha=alpha, nodes=300, rate="1.024e-3", seed=1,
+                                         remap="positions") if results.rows("series", n)]
+        for name in names[:1]:
+            axes.plot(*results.columns("series", name, "strain", "mu"), color=colour, lw=1, label=label(alpha))
+    axes.set_xlabel("strain")
+    axes.set_ylabel(r"$\mu$")
+    axes.set_title(r"300 nodes, rate 1.024e-3, $\tilde P$ = 0.1", fontsize=9, loc="left")
+    axes.legend(fontsize=8)
+    save(figure, folder, "figure_S2")
+
+
+def figure_s3(results, folder):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8))
+    most = {row["nodes"]: max(r["grains"] for r in results.plan.values() if r["nodes"] == row["nodes"])
+            for row in results.plan.values()}
+    for alpha, colour in COLOURS.items():
+        for nodes, remap, style in (("300", "positions", "o-"), ("300", "velocities", "x"), ("5137", "positions", "s")):
+            points = {}
+            for name in results.runs(scene="shear", alpha=alpha, nodes=nodes, remap=remap):
+                grains = results.plan[name]["grains"]
+                for row in results.rows("early", name) if grains == most[nodes] else []:
+                    points.setdefault(results.plan[name]["rate"], []).append(row)
+            curve = []
+            for rows in points.values():
+                number = np.mean([float(row["inertial_number"]) for row in rows])
+                mu = [float(row["mu"]) for row in rows]
+                error = np.std(mu, ddof=1) / np.sqrt(len(mu)) if len(mu) > 1 else float(rows[0]["mu_error"])
+                phi = np.mean([float(row["phi"]) for row in rows if row["phi"]])
+                curve.append((number, np.mean(mu), error, phi))
+            if curve:
+                number, mu, error, phi = np.array(sorted(curve)).T
+                text = f"{label(alpha)}" if style == "o-" else None
+                left.errorbar(number, mu, error, fmt=style, color=colour, ms=4, lw=1, label=text)
+                right.plot(number, phi, style, color=colour, ms=4, lw=1)
+    left.set_ylabel(r"$\mu$ (1 < strain < 5)")
+    right.set_ylabel(r"$\phi$")
+    left.set_title("circles: 300 nodes; crosses: remap velocities; squares: 5137 nodes", fontsize=8, loc="left")
+    for axes in (left, right):
+        axes.set_xscale("log")
+        axes.set_xlabel("inertial number I")
+    left.legend(fontsize=8)
+    save(figure, folder, "figure_S3")
+
+
+def figure_s4(results, folder):
+    figure, axes = plt.subplots(5, 1, figsize=(6, 8), sharex=True, sharey=True)
+    for axis, (alpha, colour) in zip(axes, COLOURS.items()):
+        for name in results.runs(scene="shear", alpha=alpha, nodes=300, rate="2.048e-3"):
+            strain, disordered = results.columns("structure", name, "strain", "disordered")
+            grains = results.plan[name]["grains"]
+            axis.plot(strain, 1 - disordered, color=colour, lw=1.3 if grains == "64" else 0.7,
+                      ls="--" if grains == "27" else "-", label=f"{grains} grains, seed {results.plan[name]['seed']}")
+        axis.set_ylabel(f"{label(alpha)}\nordered share", fontsize=8)
+        axis.legend(fontsize=6, loc="upper left")
+    axes[-1].set_xlabel("strain (300 nodes a grain, rate 2.048e-3)")
+    save(figure, folder, "figure_S4")
+
+
+FIGURES = [compaction_figure, figure_2, figure_3, figure_4, figure_s1, figure_s2, figure_s3, figure_s4]
+
+
+def main(results, plan, folder):
+    folder = pathlib.Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    tables = Results(results, plan)
+    for draw in FIGURES:
+        draw(tables, folder)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:4])

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Published | Boba | difference, from the tables alone: table.py RESULTS RUNS.csv PAGE.
+
+Replaces what stands between the markers of the page; without a page file it writes one that holds the table alone.
+"""
+import pathlib
+import sys
+
+import numpy as np
+
+from figures import POISSON, Results
+
+BEGIN, END = "<!-- numbers: written by examples/paper/table.py -->", "<!-- end of numbers -->"
+
+
+def value_text(value, error):
+    return f"{value:.3f} +- {error:.3f}" if np.isfinite(error) else f"{value:.3f}"
+
+
+class Table:
+    """Rows of the comparison; `published` may be a number or a text."""
+
+    def __init__(self):
+        self.lines = ["| what | published | Boba +- error | difference in errors | why |", "| --- | --- | --- | --- | --- |"]
+
+    def number(self, what, published, values, error, why):
+        """`values`: one a run. The error is that of their mean when there are several, else the given one."""
+        if not len(values):
+            self.lines.append(f"| {what} | {published:g} | not afforded | | {why} |")
+            return
+        mean = float(np.mean(values))
+        if len(values) > 1:
+            error = np.std(values, ddof=1) / np.sqrt(len(values))
+        apart = f"{(mean - published) / error:+.0f}" if np.isfinite(error) and error > 0 else "no error known"
+        runs = f" ({len(values)} runs)" if len(values) > 1 else ""
+        self.lines.append(f"| {what} | {published:g} | {value_text(mean, error)}{runs} | {apart} | {why} |")
+
+    def text(self, what, published, found, why):
+        self.lines.append(f"| {what} | {published} | {found} | | {why} |")
+
+
+def at_pressure(results, name, pressure):
+    """phi where the compaction passes this P~, linear in log P~."""
+    p, phi = results.columns("compaction", name, "P", "phi")
+    order = np.argsort(p)
+    if not len(p) or not p.min() <= pressure <= 1.05 * p.max():
+        return None
+    return float(np.interp(np.log(pressure), np.log(p[order]), phi[order]))
+
+
+def jamming(results, name, low, high):
+    """phi_c from P~^(2/3) extrapolated to zero, and the exponent of P~ ~ (phi - phi_c)^b with phi_c free."""
+    p, phi = results.columns("compaction", name, "P", "phi")
+    inside = (p > low) & (p < high)
+    if inside.sum() < 6:
+        return None
+    slope, offset = np.polyfit(p[inside] ** (2 / 3), phi[inside], 1)
+    best = (np.inf, 0.0, 0.0)
+    for critical in np.linspace(phi[inside].min() - 0.15, phi[inside].min() - 1e-4, 600):
+        x = np.log(phi[inside] - critical)
+        power, constant = np.polyfit(x, np.log(p[inside]), 1)
+        residual = np.sum((np.log(p[inside]) - power * x - constant) ** 2)
+        best = min(best, (residual, critical, power))
+    return offset, best[2]
+
+
+def compaction_rows(table, results):
+    names = [n for n in results.runs(scene="compaction") if at_pressure(results, n, 1e-2)]
+    fits = [fit for fit in (jamming(results, n, 2e-3, 1.2e-2) for n in names) if fit]
+    table.number("phi_c, from P~^(2/3) in 2e-3 .. 1.2e-2, all nu", 0.6, [f[0] for f in fits], np.nan,
+                 "300 nodes: rough grains touch at outer nodes while phi counts hulls; ramp of finite rate")
+    table.number("exponent of P~ against phi - phi_c (phi_c free)", 1.5, [f[1] for f in fits], np.nan,
+                 "depends on the range of the fit; the ramp's own pressure below 1e-3")
+    soft = results.runs(scene="compaction", alpha="-0.8")
+    for pressure, published in ((1e-2, 0.68), (0.5, 0.99)):
+        values = [v for v in (at_pressure(results, n, pressure) for n in soft) if v]
+        table.number(f"phi at P~ = {pressure:g}, nu = 0.4", published, values, 0.001,
+                     "resolution: contacts are soft over d/2, and R is 3.9 d instead of 10 d")
+
+
+def early_rows(table, results):
+    for alpha, published, mu in (("-0.8", 0.87, 0.17), ("12", 0.85, 0.10)):
+        for nodes, why in ((300, "resolution (see above) and rate"), (5137, "16 grains, and the rate")):
+            slowest = [n for n in results.runs(scene="shear", alpha=alpha, nodes=nodes, remap="positions")
+                       if results.rows("early", n)]
+            slowest = sorted(slowest, key=lambda n: float(results.plan[n]["rate"]))
+            slowest = [n for n in slowest if results.plan[n]["rate"] == results.plan[slowest[0]]["rate"]]
+            rows = [results.rows("early", n)[0] for n in slowest]
+            rate = results.plan[slowest[0]]["rate"] if slowest else "-"
+            number = f"{float(rows[0]['inertial_number']):.2g}" if rows else "-"
+            nu = f"nu = {POISSON[alpha]:g}, {nodes} nodes"
+            table.number(f"phi before shear, P~ = 0.1, {nu}", published,
+                         [float(r["phi_start"]) for r in rows if r["phi_start"]], 0.0015, why)
+            table.number(f"phi, early shear, {nu}", published, [float(r["phi"]) for r in rows if r["phi"]],
+                         float(rows[0]["phi_error"] or "nan") if rows else np.nan, why)
+            table.number(f"mu, 1 < strain < 5, {nu}", mu, [float(r["mu"]) for r in rows],
+                         float(rows[0]["mu_error"]) if rows else np.nan,
+                         f"rate {rate} (I = {number}) instead of 1.6e-5: mu grows with I")
+
+
+def onset(results, name):
+    """First strain from which the mean ordered share of five frames is above one half; None when that never comes."""
+    strain, disordered = results.columns("structure", name, "strain", "disordered")
+    if len(strain) < 5:
+        return None
+    mean = np.convolve(1 - disordered, np.ones(5) / 5, "valid")
+    return float(strain[4:][mean > 0.5][0]) if (mean > 0.5).any() else None
+
+
+def late_order(results, name):
+    strain, disordered = results.columns("structure", name, "strain", "disordered")
+    return float(np.mean(1 - disordered[strain > 0.8 * strain.max()]))
+
+
+def order_rows(table, results):
+    published = {"-0.8": "3 of 3 by strain 102.4", "0": "3 of 3", "2": "3 of 3", "5": "1 of 3", "12": "0 of 3"}
+    for alpha, nu in POISSON.items():
+        for grains in sorted({r["grains"] for r in results.plan.values() if r["nodes"] == "300"}, key=int)[::-1]:
+            names = [n for n in results.runs(scene="shear", alpha=alpha, nodes=300, grains=grains, rate="2.048e-3")
+                     if results.reached(n) > 10]
+            if not names and grains == "27":
+                continue
+            ordered = [n for n in names if late_order(results, n) > 0.5]
+            detail = "; ".join(f"to strain {results.reached(n):.0f}: " + (
+                f"order from {onset(results, n):.0f}, share at the end {late_order(results, n):.2f}"
+                if onset(results, n) else f"none, share at the end {late_order(results, n):.2f}") for n in names)
+            table.text(f"runs that order, nu = {nu:g}, {grains} grains of 300 nodes", published[alpha],
+                       f"{len(ordered)} of {len(names)} ({detail})" if names else "not afforded",
+                       "small periodic boxes order more easily; rate 2.048e-3, 128 times the published one")
+
+
+def shape_rows(table, results):
+    def early_mean(alpha, column):
+        name = results.longest(alpha)
+        if not name:
+            return np.nan
+        strain, v = results.columns("structure", name, "strain", column)
+        return float(np.mean(v[(strain > 1) & (strain < 5)]))
+
+    pairs = [("spread of hull volumes, deviation over mean", "larger at nu = -0.5", "volume_deviation_d3",
+              "volume_mean_d3"),
+             ("asphericity - 1", "larger at nu = 0.4", "asphericity_mean", None),
+             ("spread of asphericity", "larger at nu = 0.4", "asphericity_deviation", None)]
+    for what, published, column, over in pairs:
+        a, b = (early_mean(alpha, column) / (early_mean(alpha, over) if over else 1.0) -
+                (1.0 if column == "asphericity_mean" else 0.0) for alpha in ("-0.8", "12"))
+        table.text(what + ", 1 < strain < 5", published, f"{a:.4f} at nu = 0.4, {b:.4f} at nu = -0.5",
+                   "300 nodes; the undeformed grain has asphericity 1.035")
+    for alpha in ("-0.8", "2", "12"):
+        name = results.longest(alpha)
+        if name:
+            strain, values = results.columns("structure", name, "strain", "asphericity_mean")
+            first = values[(strain > 1) & (strain < 10)]
+            last = values[strain > 0.8 * strain.max()]
+            table.text(f"asphericity, 1 < strain < 10 and last fifth, nu = {POISSON[alpha]:g}",
+                       "drops" if alpha != "12" else "no change", f"{first.mean():.4f} -> {last.mean():.4f}",
+                       "the drop comes with order")
+    for nodes in ("300", "5137"):
+        for alpha in ("-0.8", "12"):
+            name = next((n for n in results.runs(scene="shear", alpha=alpha, nodes=nodes)
+                         if results.rows("distributions", n, window="early", quantity="facets")), None)
+            if name:
+                centre, count = results.columns("distributions", name, "centre", "count", quantity="facets",
+                                                window="early")
+                table.text(f"facets of a grain (peak), disordered, nu = {POISSON[alpha]:g}, {nodes} nodes", "10 to 11",
+                           f"{centre[np.argmax(count)]:.0f} (mean {np.average(centre, weights=count):.1f})",
+                           "robust rule on cut grains: rough hulls have facets of their own")
+
+
+def rigid_rows(table, results):
+    names = sorted((n for n in results.runs(scene="spheres") if results.rows("early", n)),
+                   key=lambda n: float(results.plan[n]["rate"]))
+    for name in names:
+        row = results.rows("early", name)[0]
+        number = float(row["inertial_number"])
+        why = f"I = {number:.2g}; {results.plan[name]['grains']} spheres to strain {row['to_strain']}"
+        table.number(f"rigid spheres, P~ = 1e-5: mu at I = {number:.2g}", 0.1, [float(row["mu"])],
+                     float(row["mu_error"]), why + "; Peyneau and Roux: the limit I -> 0")
+        table.number(f"the same: phi at I = {number:.2g}", 0.64, [float(row["phi_reference"])], 0.002, why)
+        table.text("the same: crystal", "none (strain 1000)", f"share {late_order(results, name):.2f} at the end",
+                   "far shorter")
+
+
+def total_rows(results):
+    rows = [row for name in results.plan for row in results.rows("summary", name)]
+    node_steps = sum(float(r["steps"]) * float(r["nodes"]) for r in rows)
+    hours = sum(float(r["seconds"]) for r in rows) / 3600
+    finished = sum(r["finished"] == "1" for r in rows)
+    return (f"{len(rows)} of {len(results.plan)} planned runs begun, {finished} finished; {node_steps:.3g} node-steps in "
+            f"{hours:.1f} hours of run time, all runs together.")
+
+
+def main(results_folder, plan, page):
+    results, table = Results(results_folder, plan), Table()
+    for add in (compaction_rows, early_rows, order_rows, shape_rows, rigid_rows):
+        add(table, results)
+    block = "\n".join([BEGIN, "", total_rows(results), "", *table.lines, "", END])
+    page = pathlib.Path(page)
+    text = page.read_text() if page.exists() else f"{BEGIN}{END}\n"
+    if BEGIN not in text or END not in text:
+        raise SystemExit(f"{page}: the markers of the table are missing")
+    page.write_text(text[: text.index(BEGIN)] + block + text[text.index(END) + len(END):])
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:4])
