@@ -14,6 +14,8 @@ namespace {
 constexpr double largest_moved_share = 0.1;
 /// Places are stored as floats: their rounding, up to hundreds of d from a grain's centre, stays below this, d.
 constexpr double rounding = 1e-4;
+/// Added to a grain's moments per node so that they can be inverted for flat and tiny grains, d^2.
+constexpr double moments_floor = 1e-6;
 
 template <class Coordinate, class Real>
 kernels::FrameArraysOf<Coordinate> frame_arrays_of(const Block& block, const LaneArrays<Coordinate, Real>& arrays,
@@ -67,6 +69,8 @@ kernels::LaneFrames ContactList::fit_frames(int b, const LaneState& state) {
     for (int c = 0; c < 9; ++c) {
       second(c / 3, c % 3) = fit.second[c][lane];
     }
+    // The same addition as to the moments: what the nodes do not tell (all of it, for a single node) stays as noted.
+    second += moments_floor * block.n_nodes * Matrix3::Identity();
     grain.frame.linear = second * grain.inverse_moments;
     for (int c = 0; c < 3; ++c) {
       grain.frame.centre[c] += fit.first[c][lane] / block.n_nodes;
@@ -143,7 +147,7 @@ void ContactList::note_all(int g, const LaneState& state) {
     moments += places[node] * places[node].transpose();
   }
   // A flat or tiny grain has no full set of moments: its frame then only turns and shears where it can.
-  moments += 1e-6 * n_nodes * Matrix3::Identity();
+  moments += moments_floor * n_nodes * Matrix3::Identity();
   grain.inverse_moments = moments.inverse();
   grain.grid = GrainGrid(places, bounds, reach_between() / (1.0 - largest_shortening));
   grain.stray = rounding;
