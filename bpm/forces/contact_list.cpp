@@ -14,8 +14,8 @@ namespace boba {
 
 namespace {
 
-/// Margin of the list of neighbouring grains, d.
-constexpr double neighbour_margin = 1.0;
+/// Margins for packings of single nodes, where wide ones would make neighbours of everybody, d.
+constexpr double bounds_margin_of_nodes = 0.02, neighbour_margin_of_nodes = 0.2;
 
 Vector3 lattice_vector(const Box& box, const ImageVector& n) {
   return box.h() * Vector3(n.a, n.b, n.c);
@@ -30,6 +30,10 @@ ContactList::ContactList(const LaneLayout& layout, const kernels::KernelTable& t
     if (static_cast<std::int64_t>(block.n_nodes) * block.n_lanes > std::numeric_limits<std::int32_t>::max()) {
       throw std::invalid_argument("contact list: a grain has more than 2.6e8 nodes, the most that are handled");
     }
+  }
+  if (std::ranges::all_of(layout.blocks(), [](const Block& block) { return block.n_nodes == 1; })) {
+    bounds_margin_ = bounds_margin_of_nodes;
+    neighbour_margin_ = neighbour_margin_of_nodes;
   }
 }
 
@@ -98,13 +102,13 @@ void ContactList::find_neighbours(const Box& box) {
   std::vector<Bounds> bounds(n_grains);
   for (int g = 0; g < n_grains; ++g) {
     TrackedGrain& grain = grains_[g];
-    bounds[g] = grain.grid.bounds().widened(bounds_margin).mapped(grain.frame).widened(grain.stray);
+    bounds[g] = grain.grid.bounds().widened(bounds_margin_).mapped(grain.frame).widened(grain.stray);
     grain.neighbour_frame = grain.frame;
   }
   std::vector<std::vector<NeighbourGrain>> neighbours(n_grains);
 #pragma omp parallel for schedule(dynamic, 8)
   for (int g = 0; g < n_grains; ++g) {
-    neighbours[g] = neighbour_grains(g, bounds, box, reach_between() + neighbour_margin);
+    neighbours[g] = neighbour_grains(g, bounds, box, reach_between() + neighbour_margin_);
     neighbours[g].push_back({g, {}});
     std::erase_if(neighbours[g], [&](const NeighbourGrain& other) {
       return other.other < g || (other.other == g && other.image < ImageVector{});
@@ -142,12 +146,12 @@ double ContactList::neighbour_guarantee(const Box& box) const {
   double farthest = 0.0;
   for (const TrackedGrain& grain : grains_) {
     const GrainFrame carried = with_cell.after(grain.neighbour_frame);
-    grain.grid.bounds().widened(bounds_margin).for_each_corner([&](const Vector3& x) {
+    grain.grid.bounds().widened(bounds_margin_).for_each_corner([&](const Vector3& x) {
       farthest = std::max(farthest, (grain.frame(x) - carried(x)).norm() + grain.stray);
     });
   }
   const double stretch = 1.0 - (cell - Matrix3::Identity()).norm();
-  return stretch * (reach_between() + neighbour_margin) - 2.0 * farthest;
+  return stretch * (reach_between() + neighbour_margin_) - 2.0 * farthest;
 }
 
 GrainFrame ContactList::second_frame(const ContactPair& pair, const Box& box) const {
@@ -187,8 +191,8 @@ void ContactList::search(ContactPair& pair, const Box& box, const NetworkData& n
   if (pair.inside()) {
     add_pairs_inside(a.grid, network, reach_inside(), pair.candidates);
   } else {
-    const Bounds of_a = a.grid.bounds().widened(bounds_margin).mapped(pair.frame_a);
-    const Bounds of_b = b.grid.bounds().widened(bounds_margin).mapped(pair.frame_b);
+    const Bounds of_a = a.grid.bounds().widened(bounds_margin_).mapped(pair.frame_a);
+    const Bounds of_b = b.grid.bounds().widened(bounds_margin_).mapped(pair.frame_b);
     pair.bounds_a = of_a.widened(reach_between());
     pair.bounds_b = of_b.widened(reach_between());
     pair.zone = {of_a.low.cwiseMax(pair.bounds_b.low), of_a.high.cwiseMin(pair.bounds_b.high)};

@@ -85,7 +85,9 @@ private:
   /// Skin between grains over the skin inside a grain, where nodes are denser and move less.
   static constexpr double between_share = 1.6;
   /// How far a node with a new place may be outside its grain's bounds before all are noted anew, d.
-  static constexpr double bounds_margin = 0.5;
+  double bounds_margin_ = 0.5;
+  /// Margin of the list of neighbouring grains, d.
+  double neighbour_margin_ = 1.0;
   /// Most that a frame may shorten before all is noted anew.
   static constexpr double largest_shortening = 0.05;
 

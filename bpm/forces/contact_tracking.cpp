@@ -160,7 +160,7 @@ void ContactList::note_all(int g, const LaneState& state) {
 bool ContactList::note_moved(int g, const LaneState& state) {
   TrackedGrain& grain = grains_[g];
   const GrainFrame back = grain.frame.inverse();
-  const Bounds allowed = grain.grid.bounds().widened(bounds_margin);
+  const Bounds allowed = grain.grid.bounds().widened(bounds_margin_);
   const std::int64_t stride = layout_.stride(g);
   for (const std::int32_t node : grain.moved) {
     const std::int64_t at = layout_.index(g, node, 0);

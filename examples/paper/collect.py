@@ -128,6 +128,8 @@ def early(run, spec):
            "P": f"{table['P_normalised'][inside].mean():.5g}",
            "phi_reference": f"{table['phi_reference'][inside].mean():.4f}", "phi": "", "phi_error": "",
            "phi_start": ""}
+    if spec["scene"] == "spheres":  # phi_reference is their packing fraction
+        row["phi_start"] = f"{table['phi_reference'][start_of_shear(table)]:.4f}"
     if "packing_fraction" in run.measures:
         measured = run.measure("packing_fraction")
         chosen = (measured["strain"] > 1.0) & (measured["strain"] < last + 0.01)

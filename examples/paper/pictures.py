@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Figure 1 from trajectories: pictures.py RUNS.csv OUT FIGURE.png.
 
-Rows nu = 0.4, 0, -0.5; columns: a squeezed cylinder, the packing at strain 3.2 and at the largest strain, a
+Rows nu = 0.4, 0 (0.25 while there is no run at 0), -0.5; columns: a squeezed cylinder, the packing at strain 3.2 and at the largest strain, a
 cross-section at 3.2, hulls of some grains.
 """
 import csv
@@ -25,8 +25,8 @@ def longest(plan, out, alpha):
     rows = [row for row in csv.DictReader(open(plan)) if row["scene"] == "shear" and row["alpha"] == alpha and
             row["nodes"] == "300" and (pathlib.Path(out) / row["name"] / "trajectory.h5").exists()]
     reached = {row["name"]: float(boba.open(f"{out}/{row['name']}").table["strain"][-1]) for row in rows}
-    best = max(rows, key=lambda row: (int(row["grains"]), reached[row["name"]]))
-    return boba.open(f"{out}/{best['name']}")
+    best = max(rows, key=lambda row: (int(row["grains"]), reached[row["name"]]), default=None)
+    return best and boba.open(f"{out}/{best['name']}")
 
 
 def early_run(plan, out, alpha):
@@ -43,7 +43,8 @@ def main(plan, out, path):
     figure, axes = plt.subplots(3, 5, figsize=(12, 7.5))
     with tempfile.TemporaryDirectory() as folder:
         picture = f"{folder}/picture.png"
-        for row, alpha in zip(axes, ("-0.8", "2", "12")):
+        middle = "2" if longest(plan, out, "2") else "0"
+        for row, alpha in zip(axes, ("-0.8", middle, "12")):
             cylinder, run, early = boba.open(f"{out}/cylinder_a{alpha}"), longest(plan, out, alpha), early_run(
                 plan, out, alpha)
             at_early, last = early.frames.at_strain(3.2), run.frames[-1]
@@ -54,7 +55,8 @@ def main(plan, out, path):
                     (lambda: pictures.hulls_picture(at_early, picture, (0,), 320), "hull")]
             for axis, (make, title) in zip(row, draw):
                 make()
-                axis.imshow(plt.imread(picture))
+                pixels = plt.imread(picture)
+                axis.imshow(pixels.swapaxes(0, 1)[::-1] if title == "squeezed" else pixels)
                 axis.set_title(title, fontsize=8)
                 axis.set_xticks([])
                 axis.set_yticks([])

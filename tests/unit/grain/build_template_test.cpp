@@ -210,5 +210,14 @@ TEST(BuildTemplate, PeriodicBulkIsDisordered) {
   EXPECT_LT(pairs_at_second_fcc_distance(box.position, *box.period), 0.8);
 }
 
+TEST(BuildTemplate, OneNodeIsASphereOfDiameterD) {
+  const GrainTemplate grain = build_template({.n_nodes = 1});
+  ASSERT_EQ(grain.n_nodes(), 1);
+  EXPECT_EQ(grain.position[0], Vector3d::Zero());
+  EXPECT_TRUE(grain.bonds.empty());
+  EXPECT_NEAR(grain.reference_volume, 4.0 / 3.0 * std::acos(-1.0) * 0.125, 1e-15);
+  EXPECT_THROW(build_template({.shape = Shape::box, .n_nodes = 1}), std::invalid_argument);
+}
+
 } // namespace
 } // namespace boba

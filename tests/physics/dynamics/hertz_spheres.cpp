@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Packings of one-node grains under Hertz's law against closed forms.
+#include "bpm/dynamics/stepper.h"
+#include "bpm/grain/build_template.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace boba::test {
+namespace {
+
+constexpr double E = 3.0;
+const Material rigid = {.hertz_modulus = E};
+
+/// Spheres of diameter 1 on a simple cubic lattice, n^3 of them, in a cell that leans by whole lattice vectors.
+Packing cubic_lattice(int n, double spacing) {
+  auto sphere = std::make_shared<const GrainTemplate>(build_template({.n_nodes = 1}));
+  std::vector<Placement> placements;
+  for (int i = 0; i < n * n * n; ++i) {
+    placements.push_back({.centre = spacing * Vector3(i % n + 0.5, i / n % n + 0.5, i / (n * n) + 0.5)});
+  }
+  const Box box(Vector3::Zero(), Vector3::Constant(n * spacing), {spacing, -spacing, 0.0});
+  return make_packing(box, {sphere}, placements);
+}
+
+double hertz(double overlap) {
+  return 4.0 / 3.0 * E * std::sqrt(0.25) * std::pow(overlap, 1.5); // R* = d / 4
+}
+
+// Six contacts a sphere: P = (1 / 3 Vol) sum r f = f / a^2.
+TEST(HertzSpheres, PressOnEachOtherInALatticeAsInClosedForm) {
+  for (const double overlap : {1e-4, 1e-2}) {
+    const double a = 1.0 - overlap;
+    Stepper stepper(cubic_lattice(4, a), rigid, {.threads = 1});
+    stepper.start();
+    EXPECT_NEAR(stepper.totals().pressure / (hertz(overlap) / (a * a)), 1.0, 1e-10);
+    EXPECT_NEAR(stepper.totals().mu(), 0.0, 1e-10);
+  }
+}
+
+// A pure shear of the lattice makes no contacts longer or shorter to first order; an isotropic squeeze does. The bulk
+// modulus is K = -V dP/dV of the closed form above, P(a) = f(1 - a) / a^2.
+TEST(HertzSpheres, HaveTheLatticesBulkModulus) {
+  const double overlap = 1e-2, a = 1.0 - overlap, h = 1e-6;
+  const auto pressure = [](double spacing) { return hertz(1.0 - spacing) / (spacing * spacing); };
+  const double modulus = -a / 3.0 * (pressure(a + h) - pressure(a - h)) / (2.0 * h);
+  Stepper stepper(cubic_lattice(4, a), rigid, {.threads = 1});
+  EXPECT_NEAR(stepper.affine_bulk_modulus() / modulus, 1.0, 1e-4);
+}
+
+// Two spheres that fly apart and together again across the periodic boundary: momentum stays, contacts are found however
+// far they have gone. Free flight in between is uniform.
+TEST(HertzSpheres, CollideWhenTheyMeet) {
+  auto sphere = std::make_shared<const GrainTemplate>(build_template({.n_nodes = 1}));
+  Packing packing = make_packing(Box(Vector3::Zero(), Vector3::Constant(6.0)), {sphere},
+                                 {{.centre = {1.0, 3.0, 3.0}}, {.centre = {4.0, 3.0, 3.0}}});
+  packing.velocity = {{0.01, 0.0, 0.0}, {-0.01, 0.0, 0.0}};
+  Material elastic = rigid;
+  elastic.gamma = 0.0;
+  Stepper stepper(std::move(packing), elastic, {.dt = 0.05, .threads = 1});
+  stepper.start();
+  bool bounced = false;
+  for (int step = 0; step < 4000; ++step) { // they meet after a gap of 2 d, at 100 tau
+    stepper.advance(Virial::full);
+    bounced = bounced || stepper.totals().pressure > 1e-6;
+    stepper.move_cell({});
+  }
+  EXPECT_TRUE(bounced);
+  const Snapshot after = stepper.snapshot({.velocity = true});
+  EXPECT_NEAR(after.velocity[0].x(), -0.01, 1e-5);
+  EXPECT_NEAR(after.velocity[1].x(), 0.01, 1e-5);
+}
+
+} // namespace
+} // namespace boba::test
