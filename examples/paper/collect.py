@@ -179,8 +179,8 @@ def distributions(run, spec):
     volume = shape["undeformed_volume_d3"][0]
     bins = {"volume": (grains["volume_d3"] / volume, np.arange(0.4, 1.6001, 0.02)),
             "asphericity": (grains["asphericity"], np.arange(1.0, 1.6001, 0.01)),
-            "facets": (grains["facets"], np.arange(-0.5, 40.6)),
-            "facets_transitive": (grains["facets_transitive"], np.arange(-0.5, 60.6))}
+            "facets": (grains["facets"], np.arange(-0.5, 80.6)),
+            "facets_transitive": (grains["facets_transitive"], np.arange(-0.5, 80.6))}
     rows = []
     for window, low, high in windows(float(run.table["strain"][-1])):
         inside = (grains["strain"] > low) & (grains["strain"] < high)

@@ -218,7 +218,7 @@ def figure_4(results, folder):
                 if len(centre):
                     axes.bar(centre, count / count.sum(), 0.85, color="#e76f51" if ordered > 0.5 else "#2a9d8f")
             axes.axvline(12, color="k", lw=0.5, ls=":")
-            axes.set_xlim(3.5, 45.5)
+            axes.set_xlim(3.5, 55.5)
             axes.tick_params(labelsize=7)
             if column == 1:
                 axes.set_ylabel(label(alpha), fontsize=8)
@@ -232,13 +232,15 @@ def figure_4(results, folder):
 def figure_s2(results, folder):
     figure, axes = plt.subplots(figsize=(5.5, 3.8))
     for alpha, colour in COLOURS.items():
-        names = [n for n in results.runs(scene="shear", alpha=alpha, nodes=300, rate="1.024e-3", seed=1,
-                                         remap="positions") if results.rows("series", n)]
-        for name in names[:1]:
-            axes.plot(*results.columns("series", name, "strain", "mu"), color=colour, lw=1, label=label(alpha))
+        names = [n for n in results.runs(scene="shear", alpha=alpha, nodes=300, seed=1, remap="positions")
+                 if results.rows("early", n)]
+        for name in sorted(names, key=lambda n: float(results.plan[n]["rate"]))[:1]:
+            strain, mu = results.columns("series", name, "strain", "mu")
+            axes.plot(strain[strain < 5], mu[strain < 5], color=colour, lw=1,
+                      label=f"{label(alpha)}, rate {results.plan[name]['rate']}")
     axes.set_xlabel("strain")
     axes.set_ylabel(r"$\mu$")
-    axes.set_title(r"300 nodes, rate 1.024e-3, $\tilde P$ = 0.1", fontsize=9, loc="left")
+    axes.set_title(r"300 nodes, $\tilde P$ = 0.1", fontsize=9, loc="left")
     axes.legend(fontsize=8)
     save(figure, folder, "figure_S2")
 

@@ -13,6 +13,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from PIL import Image
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
 import boba
@@ -64,6 +65,7 @@ def main(plan, out, path):
             row[0].set_ylabel(rf"$\nu$ = {POISSON[alpha]:g}")
     figure.tight_layout()
     figure.savefig(path, dpi=80)
+    Image.open(path).convert("RGB").quantize(128).save(path, optimize=True)  # small enough for the repository
 
 
 if __name__ == "__main__":
