@@ -63,26 +63,27 @@ def plot_time_step(folder):
 
 def plot_energy(folder):
     alone, loops, spectrum, twin = (table(folder, name) for name in ("energy_left_alone", "energy_loops", "spectrum", "rounding_left_alone"))
-    figure, axes = plt.subplots(1, 3, figsize=(14, 4), constrained_layout=True)
+    figure, axes = plt.subplots(1, 3 if spectrum else 2, figsize=(14 if spectrum else 10, 4), constrained_layout=True)
     shown = [a for a in values(alone, "alpha_kd") if a in (-0.8, 0.0, 2.0, 12.0)]
     for k, alpha in enumerate(shown):
         for precision, sign in (("double", "-"), ("mixed", ":")):
             axes[0].semilogy(*curve(alone, "time_tau", "kinetic_kd2", alpha_kd=alpha, precision=precision), sign, color=f"C{k}", lw=1,
                              label=f"alpha = {alpha:g}, {precision}")
-        axes[0].semilogy(*curve(twin, "time_tau", "kinetic_kd2", alpha_kd=alpha), "--", color=f"C{k}", lw=1, label=f"alpha = {alpha:g}, long double")
+        if values(twin, "alpha_kd") and alpha in values(twin, "alpha_kd"):
+            axes[0].semilogy(*curve(twin, "time_tau", "kinetic_kd2", alpha_kd=alpha), "--", color=f"C{k}", lw=1, label=f"alpha = {alpha:g}, long double")
     axes[0].set(xlabel="time (tau)", ylabel="kinetic energy (k d^2)", title="undamped grain of 100 nodes at rest")
     axes[0].legend(fontsize=6)
-    for n in values(spectrum, "nodes"):
-        x, y = curve(spectrum, "alpha_kd", "rate_per_tau", nodes=n)
-        axes[1].plot(x, y, "o-", ms=3, lw=1, label=f"{n:.0f} nodes")
-    axes[1].set(xlabel="alpha (k d)", ylabel="growth rate without damping (1/tau)", title="spectrum of the linearised law")
-    axes[1].legend(fontsize=7)
+    if spectrum:
+        for n in values(spectrum, "nodes"):
+            axes[1].plot(*curve(spectrum, "alpha_kd", "rate_per_tau", nodes=n), "o-", ms=3, lw=1, label=f"{n:.0f} nodes")
+        axes[1].set(xlabel="alpha (k d)", ylabel="growth rate without damping (1/tau)", title="spectrum of the linearised law")
+        axes[1].legend(fontsize=7)
     for k, alpha in enumerate([a for a in values(loops, "alpha_kd") if a in (-0.8, 0.0, 2.0, 5.0, 12.0)]):
         for sense, sign in ((1.0, "o-"), (-1.0, "s--")):
             x, y = curve(loops, "amplitude", "many_body_kd2", alpha_kd=alpha, gamma=1.0, sense=sense, period_tau=500.0)
-            axes[2].loglog(x, np.abs(y), sign, color=f"C{k}", ms=3, lw=1, label=f"alpha = {alpha:g}" if sense > 0 else None)
-    axes[2].set(xlabel="amplitude of the strain loop", ylabel="|work of the many-body force| (k d^2)", title="bulk, one closed loop, damped")
-    axes[2].legend(fontsize=7)
+            axes[-1].loglog(x, np.abs(y), sign, color=f"C{k}", ms=3, lw=1, label=f"alpha = {alpha:g}" if sense > 0 else None)
+    axes[-1].set(xlabel="amplitude of the strain loop", ylabel="|work of the many-body force| (k d^2)", title="bulk, one closed loop, damped")
+    axes[-1].legend(fontsize=7)
     return figure
 
 
@@ -105,7 +106,7 @@ def plot_rounding(folder):
         label = f"alpha = {case[0]:g}, gamma = {case[1]:.0f}, {case[2]}"
         axes[2].loglog(*curve(momenta, "steps", "momentum_error", **wanted), "-", color=f"C{k}", lw=1, label=label)
         axes[2].loglog(*curve(momenta, "steps", "angular_error", **wanted), "--", color=f"C{k}", lw=1)
-    axes[2].set(xlabel="steps", ylabel="relative change", title="momentum (-) and angular momentum (--) of a free grain")
+    axes[2].set(xlabel="steps", ylabel="relative change", title="momentum (-), angular momentum (--)")
     axes[2].legend(fontsize=6)
     return figure
 
@@ -123,9 +124,10 @@ def plot_barostat(folder):
         x, y = curve(shear, "gain", "rms", rate_per_tau=rate)
         order = np.argsort(x)
         axes[1].loglog(x[order], y[order], "o-", color=f"C{k}", ms=3, lw=1, label=f"rate {rate:g} / tau")
-        axes[1].loglog(*curve(shear, "gain", "rms", rate_per_tau=rate, is_default="true"), "*", color=f"C{k}", ms=11)
+        default = curve(shear, "gain", "rms", rate_per_tau=rate, is_default="true")
+        axes[1].loglog(*default, "*", color=f"C{k}", ms=11, label="default gain" if default.size else None)
     axes[1].axhline(1e-3, color="k", lw=0.8)
-    axes[1].set(xlabel="gain (d / k tau)", ylabel="rms of P / P_target - 1", title="under shear (stars: default gain)")
+    axes[1].set(xlabel="gain (d / k tau)", ylabel="rms of P / P_target - 1", title="under shear")
     axes[1].legend(fontsize=7)
     return figure
 

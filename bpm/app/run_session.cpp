@@ -121,6 +121,9 @@ private:
   }
 
   ExitCode finish() {
+    if (writers_.trajectory) {
+      writers_.trajectory->close();
+    }
     const Timings t = simulation_.timings();
     log_.note(fmt::format(
         "seconds: bonds {:.2f}, contacts {:.2f}, search {:.2f}, integration {:.2f}, other {:.2f}; {} steps, {} "

@@ -25,13 +25,13 @@ std::int64_t last_step_of(const RunSetup& setup, std::size_t writer) {
   return setup.restart && writer < setup.restart->last_steps.size() ? setup.restart->last_steps[writer] : -1;
 }
 
-FrameObserver::Write trajectory_writer(const RunSetup& setup, const Simulation& simulation, const FrameOutput& output,
+std::shared_ptr<TrajectoryWriter> trajectory_writer(const RunSetup& setup, const Simulation& simulation, const FrameOutput& output,
                                        std::int64_t last_step) {
   const Topology topology = simulation.packing().topology(true);
   const std::filesystem::path path = setup.folder.trajectory();
-  if (setup.restart) {
-    auto writer = std::make_shared<TrajectoryWriter>(TrajectoryWriter::go_on(path, topology, last_step));
-    return [writer](const Snapshot& snapshot) { writer->write(snapshot); };
+  // Before its first frame the file has nothing to be kept, and if that frame was cut off HDF5 cannot read it at all.
+  if (setup.restart && last_step >= 0) {
+    return std::make_shared<TrajectoryWriter>(TrajectoryWriter::go_on(path, topology, last_step));
   }
   TrajectoryOrigin origin;
   origin.scene = with_overrides(setup.scene);
@@ -40,8 +40,8 @@ FrameObserver::Write trajectory_writer(const RunSetup& setup, const Simulation& 
   origin.git_hash = git_hash();
   TrajectoryOptions options;
   options.velocity = output.velocities;
-  auto writer = std::make_shared<TrajectoryWriter>(path, topology, origin, options);
-  return [writer](const Snapshot& snapshot) { writer->write(snapshot); };
+  const FileMode mode = setup.restart ? FileMode::overwrite : FileMode::create;
+  return std::make_shared<TrajectoryWriter>(path, topology, origin, options, mode);
 }
 
 FrameObserver::Write dump_writer(const RunSetup& setup, std::shared_ptr<const Topology> topology,
@@ -107,7 +107,8 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
         schedule(output.every), output.velocities, last_step(), std::move(write)));
   };
   if (plan.trajectory) {
-    add(*plan.trajectory, trajectory_writer(setup, simulation, *plan.trajectory, last_step()));
+    writers.trajectory = trajectory_writer(setup, simulation, *plan.trajectory, last_step());
+    add(*plan.trajectory, [writer = writers.trajectory](const Snapshot& snapshot) { writer->write(snapshot); });
   }
   if (plan.dump) {
     add(*plan.dump, dump_writer(setup, topology, last_step()));

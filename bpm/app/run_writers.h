@@ -5,6 +5,7 @@
 #include "bpm/app/measure/measure_tables.h"
 #include "bpm/app/run_setup.h"
 #include "bpm/app/table_observer.h"
+#include "bpm/io/trajectory.h"
 
 #include <memory>
 #include <vector>
@@ -16,6 +17,8 @@ struct RunWriters {
   std::unique_ptr<TableObserver> table;
   std::vector<std::unique_ptr<FrameObserver>> frames; ///< trajectory, dump, VTK, measures
 
+  /// Closed at the end of a run, where a failure is still told; null when not asked for.
+  std::shared_ptr<TrajectoryWriter> trajectory;
   /// The measures of motion, which look back to the frame before; null when not asked for.
   std::shared_ptr<const MeasureTables> motion;
 
