@@ -241,7 +241,7 @@ def facet_rows(runner, plan):
     for cosine in plan.cosines if default else ():
         found = value(cosine)
         if found:
-            for name in (n for n in found if n in ("faceted_share_mean", "facets_mean")):
+            for name in (n for n in found if n in ("faceted_share", "facets_mean")):
                 rows.append(row("hull threshold", cosine, "double", name + " minus default's", float(found[name][-1] - default[name][-1]), "",
                                 runner.record(axes.facets(cosine, 0.01).name)["cpu_seconds"], f"{default[name][-1]:.4g} at 0.99", axes.facets(cosine, 0.01).name))
     return rows

@@ -87,7 +87,7 @@ def other_picture(rows, path):
     panel(panels[0], chosen(rows, "random points", "phi"), "phi: random points", "root mean square error")
     for quantity, colour in (("E", "C0"), ("nu", "C1")):
         panel(panels[1], chosen(rows, "residual of the solves", quantity), "E, nu: residual of the solves", "error", colour=colour, name=quantity)
-    part = chosen(rows, "hull threshold", "faceted_share_mean")
+    part = chosen(rows, "hull threshold", "faceted_share minus")
     panels[2].plot([1 - r["setting"] for r in part], [r["error"] for r in part], "o-", ms=4, lw=1)
     panels[2].set(xscale="log", title="facets: threshold (a definition)", xlabel="1 - least cosine", ylabel="faceted share minus that at 0.99")
     panels[2].grid(alpha=0.3, which="both")
