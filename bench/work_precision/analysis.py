@@ -16,8 +16,8 @@ NODES = 64 * 303
 def evaluate(runner, plan):
     """Rows of the table: all axes whose runs are there."""
     rows = []
-    for axis in (step_rows, skin_rows, rate_rows, peer_rows, long_rows, press_rows, fraction_rows, facet_rows, box_rows,
-                 tolerance_rows, specimen_rows):
+    for axis in (step_rows, precision_rows, skin_rows, rate_rows, peer_rows, long_rows, press_rows, fraction_rows,
+                 facet_rows, box_rows, tolerance_rows, specimen_rows):
         rows += axis(runner, plan)
     return rows
 
@@ -107,6 +107,16 @@ def step_rows(runner, plan):
         for dt in steps:
             rows += path_rows(runner, "time step", dt, axes.packing(dt, precision, strain=plan.strain), reference, plan.strain, precision)
     return rows
+
+
+def precision_rows(runner, plan):
+    """Mixed against double at the same step or rate, and over the long run."""
+    cases = [(f"dt {dt:g}", {"dt": dt, "strain": plan.strain}) for dt in plan.mixed_steps]
+    cases += [(f"rate {rate:g}", {"rate": rate, "strain": plan.rate_strain}) for rate in plan.mixed_rates]
+    cases += [(f"strain {plan.long_strain:g}", {"strain": plan.long_strain})]
+    return [r for setting, values in cases
+            for r in path_rows(runner, "precision", setting, axes.packing(precision="mixed", **values), axes.packing(**values),
+                               values["strain"], "mixed")]
 
 
 def skin_rows(runner, plan):

@@ -4,6 +4,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # the backend is chosen first
+from matplotlib import ticker
 
 QUIET = {"double": ("C0", "o-"), "mixed": ("C1", "s--")}
 
@@ -22,7 +23,7 @@ def draw(rows, folder):
 
 def panel(axis, rows, title, ylabel, label=True, style="o-", colour=None, name=None):
     """One curve of absolute error with its bar against seconds, points named by their setting."""
-    rows = sorted((r for r in rows if r["error"] != 0), key=lambda r: r["seconds"])
+    rows = sorted((r for r in rows if r["error"] != 0), key=lambda r: r["setting"])
     axis.set(title=title, xlabel="processor seconds", ylabel=ylabel)
     axis.grid(alpha=0.3, which="both")
     if not rows:
@@ -31,6 +32,9 @@ def panel(axis, rows, title, ylabel, label=True, style="o-", colour=None, name=N
     bars = [min(float(r["error_bar"] or 0), 0.95 * abs(r["error"])) for r in rows]
     axis.errorbar(x, y, yerr=[bars, [float(r["error_bar"] or 0) for r in rows]], fmt=style, ms=4, lw=1, capsize=2, color=colour, label=name)
     axis.set(xscale="log", yscale="log")
+    axis.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+    axis.xaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+    axis.xaxis.set_minor_formatter(ticker.NullFormatter())
     for r, a, b in zip(rows, x, y) if label else ():
         text = r["setting"] if isinstance(r["setting"], str) else f"{r['setting']:g}"
         axis.annotate(text, (a, b), fontsize=6, xytext=(3, 3), textcoords="offset points")
