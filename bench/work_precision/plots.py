@@ -41,7 +41,7 @@ def panel(axis, rows, title, ylabel, label=True, style="o-", colour=None, name=N
 
 
 def packing_picture(rows, path):
-    """Time step and precision, skin, rate, and LAMMPS."""
+    """Time step and precision, cost of the skin, rate, and LAMMPS."""
     figure, panels = plt.subplots(2, 3, figsize=(11, 6.4), constrained_layout=True)
     for column, kind in enumerate(("P, path", "mu, path", "mu, mean")):
         axis = panels[0, column]
@@ -51,15 +51,18 @@ def packing_picture(rows, path):
         if axis.has_data():
             axis.legend(fontsize=7)
     for kind, colour in (("P, mean", "C2"), ("mu, mean", "C3")):
-        panel(panels[1, 0], chosen(rows, "skin", kind), "skin (chaos only)", "difference", colour=colour, name=kind)
         for precision, (_, style) in QUIET.items():
             part = [r for r in chosen(rows, "shear rate", kind) if r["precision"] == precision]
             panel(panels[1, 1], part, "shear rate", "difference from the slowest", style=style, colour=colour, name=f"{kind}, {precision}")
+    part = chosen(rows, "skin", "cost")
+    panels[1, 0].plot([r["setting"] for r in part], [r["seconds"] for r in part], "o-", ms=4, lw=1)
+    panels[1, 0].set(title="skin: cost alone", xlabel="skin (d)", ylabel="processor seconds", ylim=(0, None))
+    panels[1, 0].grid(alpha=0.3)
     for (kind, colour) in (("mu", "C3"), ("P", "C2"), ("volume", "C4")):
         for setting, style in (("engine", "o"), ("LAMMPS", "*")):
             part = [r for r in chosen(rows, "peer", kind) if r["setting"].startswith(setting)]
             panel(panels[1, 2], part, "held pressure, strain 0.1", "path error", False, style, colour, f"{kind}, {setting}")
-    for axis in panels[1]:
+    for axis in panels[1, 1:]:
         if axis.has_data():
             axis.legend(fontsize=6)
     figure.savefig(path, dpi=80)
