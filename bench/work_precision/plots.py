@@ -40,6 +40,14 @@ def panel(axis, rows, title, ylabel, label=True, style="o-", colour=None, name=N
         axis.annotate(text, (a, b), fontsize=6, xytext=(3, 3), textcoords="offset points")
 
 
+def save(figure, path):
+    """Writes a picture without its empty panels."""
+    for axis in figure.axes:
+        axis.set_visible(axis.has_data())
+    figure.savefig(path, dpi=80)
+    plt.close(figure)
+
+
 def packing_picture(rows, path):
     """Time step and precision, cost of the skin, rate, and LAMMPS."""
     figure, panels = plt.subplots(2, 3, figsize=(11, 6.4), constrained_layout=True)
@@ -65,8 +73,7 @@ def packing_picture(rows, path):
     for axis in panels[1, 1:]:
         if axis.has_data():
             axis.legend(fontsize=6)
-    figure.savefig(path, dpi=80)
-    plt.close(figure)
+    save(figure, path)
 
 
 def specimen_picture(rows, path):
@@ -84,8 +91,7 @@ def specimen_picture(rows, path):
     for axis in panels.flat:
         if axis.has_data():
             axis.legend(fontsize=7)
-    figure.savefig(path, dpi=80)
-    plt.close(figure)
+    save(figure, path)
 
 
 def other_picture(rows, path):
@@ -99,5 +105,4 @@ def other_picture(rows, path):
     panels[2].set(xscale="log", title="facets: threshold (a definition)", xlabel="1 - least cosine", ylabel="faceted share minus that at 0.99")
     panels[2].grid(alpha=0.3, which="both")
     panels[1].legend(fontsize=7) if panels[1].has_data() else None
-    figure.savefig(path, dpi=80)
-    plt.close(figure)
+    save(figure, path)
