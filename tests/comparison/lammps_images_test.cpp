@@ -57,8 +57,8 @@ Mean mean_of(const std::vector<double>& values) {
 
 /// LAMMPS's own grain under the static solver. How it lay in LAMMPS's run is not known, so it is pressed as it lies
 /// in the file and turned, and a force may differ from the mean by what one orientation does: 2 to 4 % of the mean
-/// at 18.99 d, less below. Tolerance: 10 %, three times that; of the bulge 0.005 d, as orientations differ by 0.001 to
-/// 0.002 d.
+/// at 18.99 d, less below. Tolerance: 10 %, three times that; of the bulge 10 % plus what orientations differ by, as
+/// for the continuum's: which nodes LAMMPS's equator was taken from is not known.
 class LammpsImages : public ::testing::TestWithParam<double> {};
 
 TEST_P(LammpsImages, CarryTheForceThatLammpsFound) {
@@ -94,8 +94,10 @@ TEST_P(LammpsImages, CarryTheForceThatLammpsFound) {
                             100.0 * mean.deviation / mean.value),
                 mean.value, reference, 0.1 * reference);
   }
-  expect_near(fmt::format("alpha = {}, height {} d: bulge at the equator", alpha, heights.back()),
-              mean_of(bulges).value, lammps_bulge(alpha), 0.005);
+  const Mean bulge = mean_of(bulges);
+  const double equator = lammps_bulge(alpha);
+  expect_near(fmt::format("alpha = {}, height {} d: bulge at the equator", alpha, heights.back()), bulge.value, equator,
+              std::max(0.005, 0.1 * std::abs(equator) + bulge.deviation));
 }
 
 INSTANTIATE_TEST_SUITE_P(Alpha, LammpsImages, ::testing::Values(-0.8, 0.0, 12.0),
