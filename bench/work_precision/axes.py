@@ -62,7 +62,7 @@ class Plan:
         self.cosines = pick((0.9, 0.97, 0.98, 0.99, 0.995, 0.999), (0.98, 0.99))
         self.boxes = pick({300: 3, 1000: 3, 3000: 3, 8000: 3, 20_000: 1}, {300: 2, 1000: 2})  # nodes: number of boxes
         self.tolerance_box = pick((3000, 3), (1000, 2))
-        self.tolerances = pick((1e-1, 1e-2, 1e-3, 1e-5, 1e-8), (1e-2, 1e-8))
+        self.tolerances = pick((5e-2, 1e-2, 1e-3, 1e-5, 1e-8), (1e-2, 1e-8))
         self.radii = pick("3,4,5,7", "3,4")
         self.press_steps = pick((0.02, 0.05, 0.1, 0.13, 0.16, 0.19), (0.05, 0.1))
         self.velocities = pick((1.6e-2, 8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 1.25e-4, 3.125e-5), (4e-3, 2e-3))
