@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <set>
 #include <stdexcept>
 
 namespace boba {
@@ -148,6 +149,9 @@ std::vector<std::string> lines(const std::string& text) {
 
 CheckpointData constant_part(const RunSetup& setup, const Simulation& simulation) {
   CheckpointData data;
+  if (!simulation.ranks().is_root()) {
+    return data;
+  }
   data.text["scene"] = setup.scene.text;
   data.text["scene_path"] = setup.scene.path.string();
   std::string& overrides = data.text["overrides"];
@@ -161,6 +165,34 @@ CheckpointData constant_part(const RunSetup& setup, const Simulation& simulation
   }
   store_packing(data, simulation.packing());
   return data;
+}
+
+namespace {
+
+const std::set<std::string> of_nodes = {"position", "velocity", "force"};
+
+template <class Values> void share(std::map<std::string, Values>& entries, const Ranks& ranks) {
+  std::string names;
+  for (const auto& [name, values] : entries) {
+    names += of_nodes.contains(name) ? "" : name + "\n";
+  }
+  ranks.broadcast(names);
+  for (const std::string& name : lines(names)) {
+    ranks.broadcast(entries[name]);
+  }
+}
+
+} // namespace
+
+void share_checkpoint(LatestCheckpoint& checkpoint, const Ranks& ranks) {
+  if (ranks.many()) {
+    share(checkpoint.data.text, ranks);
+    share(checkpoint.data.real, ranks);
+    share(checkpoint.data.integer, ranks);
+    std::string path = checkpoint.path.string();
+    ranks.broadcast(path);
+    checkpoint.path = path;
+  }
 }
 
 RunSetup setup_from(const LatestCheckpoint& checkpoint, const OutputFolder& folder) {
@@ -210,7 +242,8 @@ void store_writers(CheckpointData& data, const RunWriters& writers) {
 }
 
 bool CheckpointObserver::wants(const StepForecast& forecast) {
-  due_ = schedule_.due(forecast) || std::chrono::duration<double>(Clock::now() - last_).count() >= every_seconds_;
+  now_ = forecast.seconds;
+  due_ = schedule_.due(forecast) || now_ - last_ >= every_seconds_;
   return due_;
 }
 
@@ -226,6 +259,10 @@ std::filesystem::path CheckpointObserver::write(const Simulation& simulation) {
   std::erase_if(data_.real, belongs_to_simulation); // what an earlier stage stored may have no successor
   std::erase_if(data_.integer, belongs_to_simulation);
   SavedState state = simulation.save();
+  last_ = now_;
+  if (!simulation.ranks().is_root()) {
+    return {};
+  }
   for (auto& [name, values] : state.real) {
     data_.real[name] = std::move(values);
   }
@@ -233,9 +270,7 @@ std::filesystem::path CheckpointObserver::write(const Simulation& simulation) {
     data_.integer[name] = std::move(values);
   }
   store_writers_(data_);
-  const std::filesystem::path file = write_checkpoint(folder_, data_);
-  last_ = Clock::now();
-  return file;
+  return write_checkpoint(folder_, data_);
 }
 
 } // namespace boba

@@ -7,7 +7,6 @@
 #include "bpm/dynamics/observer.h"
 #include "bpm/io/checkpoint.h"
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -20,7 +19,10 @@ namespace boba {
 /// "Checkpoint".
 CheckpointData constant_part(const RunSetup& setup, const Simulation& simulation);
 
-/// The inverse: a setup that goes on from the checkpoint. Paths of the scene need not exist any more.
+/// Rank 0's checkpoint for all, but for what belongs to single nodes: Simulation::restore hands that out.
+void share_checkpoint(LatestCheckpoint& checkpoint, const Ranks& ranks);
+
+/// The inverse of constant_part: a setup that goes on from the checkpoint. Paths of the scene need not exist any more.
 /// \throws InputError when the checkpoint lacks a part.
 RunSetup setup_from(const LatestCheckpoint& checkpoint, const OutputFolder& folder);
 
@@ -38,18 +40,17 @@ public:
 
   bool wants(const StepForecast& forecast) override;
   void observe(const Simulation& simulation, const StageProgress& progress) override;
-  /// Writes one now and returns its path.
+  /// Writes one now and returns its path, on rank 0. Collective.
   std::filesystem::path write(const Simulation& simulation);
 
 private:
-  using Clock = std::chrono::steady_clock;
   std::filesystem::path folder_;
   CheckpointData data_;
   double every_seconds_;
   Schedule schedule_;
   std::function<void(CheckpointData&)> store_writers_;
   bool due_ = false;
-  Clock::time_point last_ = Clock::now();
+  double now_ = 0.0, last_ = 0.0; ///< s, by the forecasts
 };
 
 } // namespace boba

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/checkpoint_observer.h"
 #include "bpm/app/command.h"
+#include "bpm/app/on_ranks.h"
 #include "bpm/app/run_session.h"
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/io/input_error.h"
+#include "bpm/parallel/message_passing.h"
 #include "bpm/scene/scene_packing.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace boba {
@@ -33,19 +36,38 @@ void check_instruction_set(const LatestCheckpoint& checkpoint, bool allow_other)
   }
 }
 
-ExitCode resume(const ResumeArguments& a) {
+/// Rank 0 reads; the others get everything but the nodes, which the simulation hands out.
+LatestCheckpoint read(const ResumeArguments& a, const OutputFolder& folder, const Ranks& ranks) {
+  LatestCheckpoint checkpoint;
+  ranks.together([&] {
+    if (!ranks.is_root()) {
+      return;
+    }
+    checkpoint = latest_checkpoint(folder.checkpoints());
+    for (const std::string& refused : checkpoint.refused) {
+      fmt::print(stderr, "boba: warning: {}; going on from {}\n", refused, checkpoint.path.string());
+    }
+    check_instruction_set(checkpoint, a.allow_other_isa);
+  });
+  share_checkpoint(checkpoint, ranks);
+  return checkpoint;
+}
+
+ExitCode resume(const ResumeArguments& a, const Ranks& ranks) {
   const OutputFolder folder(a.folder);
-  const LatestCheckpoint checkpoint = latest_checkpoint(folder.checkpoints());
-  for (const std::string& refused : checkpoint.refused) {
-    fmt::print(stderr, "boba: warning: {}; going on from {}\n", refused, checkpoint.path.string());
+  std::optional<RunSetup> setup;
+  {
+    const LatestCheckpoint checkpoint = read(a, folder, ranks);
+    ranks.together([&] { setup = setup_from(checkpoint, folder); });
   }
-  check_instruction_set(checkpoint, a.allow_other_isa);
-  RunSetup setup = setup_from(checkpoint, folder);
-  setup.scene.options.threads = a.threads.value_or(setup.scene.options.threads);
-  setup.scene.wall_time = a.wall_time ? a.wall_time : setup.scene.wall_time;
-  setup.quiet = a.quiet;
-  setup.stages = resolve_pressures(setup.scene, setup.modulus);
-  return run_scene(std::move(setup));
+  setup->scene.options.threads = a.threads.value_or(setup->scene.options.threads);
+  if (ranks.many() && !a.threads) {
+    setup->scene.options.threads = std::min(setup->scene.options.threads, threads_of_a_rank(ranks));
+  }
+  setup->scene.wall_time = a.wall_time ? a.wall_time : setup->scene.wall_time;
+  setup->quiet = a.quiet;
+  ranks.together([&] { setup->stages = resolve_pressures(setup->scene, setup->modulus); });
+  return run_scene(std::move(*setup), ranks);
 }
 
 } // namespace
@@ -59,7 +81,7 @@ CommandBody add_resume_command(CLI::App& app) {
   app.add_flag("--allow-other-isa", a->allow_other_isa,
                "go on although the instruction set differs: no longer bit for bit");
   app.add_flag("--quiet", a->quiet, "print nothing but errors");
-  return [a] { return resume(*a); };
+  return [a] { return on_all_ranks([a](const Ranks& ranks) { return resume(*a, ranks); }); };
 }
 
 } // namespace boba

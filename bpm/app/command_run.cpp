@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/command.h"
+#include "bpm/app/on_ranks.h"
 #include "bpm/app/run_session.h"
 #include "bpm/io/input_error.h"
 #include "bpm/io/output_file.h"
+#include "bpm/parallel/message_passing.h"
+#include "bpm/parallel/share_packing.h"
 #include "bpm/scene/scene_packing.h"
 
 #include <algorithm>
@@ -42,35 +45,55 @@ void check_inside(const Scene& scene) {
   }
 }
 
-ExitCode run(const RunArguments& a) {
+/// Rank 0 makes the packing that the run starts from; the others read the scene alone.
+RunSetup prepare(const RunArguments& a, const Ranks& ranks) {
   Scene scene = read_scene(a.scene, a.overrides);
   scene.options.threads = a.threads.value_or(scene.options.threads);
   scene.wall_time = a.wall_time ? a.wall_time : scene.wall_time;
-  if (a.output.empty()) {
+  if (a.output.empty() && ranks.is_root()) {
     check_inside(scene);
   }
   const OutputFolder folder(a.output.empty() ? scene.output.directory : a.output);
-  folder.check_free(a.force);
-  const PoissonTable table = PoissonTable::installed();
-  const auto narrate = [&a](const std::string& text) {
-    if (!a.quiet) {
-      fmt::print("{}\n", text);
-      std::fflush(stdout);
-    }
-  };
   RunSetup setup{std::move(scene), folder, {}, {}, std::nullopt, a.quiet, std::nullopt};
-  setup.packing = make_start(setup.scene, table, narrate);
-  setup.modulus = effective_modulus(setup.packing, setup.scene.material, table);
-  setup.stages = resolve_pressures(setup.scene, setup.modulus);
-  const bool automatic = setup.scene.automatic_dt;
-  check_time_step(setup.scene, settle_time_step(setup.scene, setup.packing));
-  if (automatic) {
-    narrate(fmt::format("time step: {:.4g} tau", setup.scene.options.dt));
+  if (ranks.is_root()) {
+    folder.check_free(a.force);
+    const PoissonTable table = PoissonTable::installed();
+    const auto narrate = [&a](const std::string& text) {
+      if (!a.quiet) {
+        fmt::print("{}\n", text);
+        std::fflush(stdout);
+      }
+    };
+    setup.packing = make_start(setup.scene, table, narrate);
+    setup.modulus = effective_modulus(setup.packing, setup.scene.material, table);
+    setup.stages = resolve_pressures(setup.scene, setup.modulus);
+    const bool automatic = setup.scene.automatic_dt;
+    check_time_step(setup.scene, settle_time_step(setup.scene, setup.packing));
+    if (automatic) {
+      narrate(fmt::format("time step: {:.4g} tau", setup.scene.options.dt));
+    }
   }
-  // Everything that can be wrong with the input has been found by now: from here on files are written.
-  folder.create(a.force);
-  copy_scene(setup.scene, folder, a.force);
-  return run_scene(std::move(setup));
+  return setup;
+}
+
+ExitCode run(const RunArguments& a, const Ranks& ranks) {
+  std::optional<RunSetup> setup;
+  ranks.together([&] { setup = prepare(a, ranks); });
+  share_packing(setup->packing, ranks);
+  ranks.broadcast(setup->modulus);
+  ranks.broadcast(setup->scene.options.dt);
+  if (ranks.many() && !a.threads) {
+    setup->scene.options.threads = std::min(setup->scene.options.threads, threads_of_a_rank(ranks));
+  }
+  ranks.together([&] {
+    setup->stages = resolve_pressures(setup->scene, setup->modulus);
+    if (ranks.is_root()) {
+      // Everything that can be wrong with the input has been found by now: from here on files are written.
+      setup->folder.create(a.force);
+      copy_scene(setup->scene, setup->folder, a.force);
+    }
+  });
+  return run_scene(std::move(*setup), ranks);
 }
 
 } // namespace
@@ -87,7 +110,7 @@ CommandBody add_run_command(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   app.add_flag("--force", a->force, "replace the run that is in the output folder");
   app.add_flag("--quiet", a->quiet, "print nothing but errors");
-  return [a] { return run(*a); };
+  return [a] { return on_all_ranks([a](const Ranks& ranks) { return run(*a, ranks); }); };
 }
 
 } // namespace boba

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The program `boba`: reads the command line, runs one command, turns errors into exit codes.
 #include "bpm/app/command.h"
+#include "bpm/app/on_ranks.h"
 #include "bpm/app/sibling.h"
 #include "bpm/app/thread_waiting.h"
 #include "bpm/app/version.h"
@@ -64,7 +65,9 @@ int run_command(int argc, char** argv) {
   } catch (const CLI::Success& success) { // --help, --version
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    app.exit(error);
+    if (!boba::is_other_rank()) {
+      app.exit(error);
+    }
     return static_cast<int>(ExitCode::wrong_input);
   }
   for (const auto& [sub, body] : bodies) {

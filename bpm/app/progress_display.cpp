@@ -39,12 +39,18 @@ std::string readable_duration(double seconds) {
   return s >= 60 ? fmt::format("{} min {:02} s", s / 60, s % 60) : fmt::format("{} s", s);
 }
 
-ProgressDisplay::ProgressDisplay(double modulus, std::int64_t n_nodes, bool quiet)
+ProgressDisplay::ProgressDisplay(double modulus, std::int64_t n_nodes, bool quiet, const Ranks& ranks)
     : modulus_(modulus), n_nodes_(static_cast<double>(n_nodes)), quiet_(quiet), terminal_(isatty(STDOUT_FILENO) == 1),
-      interval_(terminal_ ? terminal_interval : pipe_interval) {}
+      visible_(ranks.is_root()), interval_(terminal_ ? terminal_interval : pipe_interval) {
+  ranks.broadcast(interval_);
+}
 
-bool ProgressDisplay::wants(const StepForecast&) {
-  return !quiet_ && seconds_since(last_) >= interval_;
+bool ProgressDisplay::wants(const StepForecast& forecast) {
+  if (quiet_ || forecast.seconds - last_seconds_ < interval_) {
+    return false;
+  }
+  last_seconds_ = forecast.seconds;
+  return true;
 }
 
 void ProgressDisplay::begin_stage(std::int64_t step, const StageProgress& progress) {
@@ -79,7 +85,7 @@ std::string ProgressDisplay::line(const StageProgress& progress, double pressure
 }
 
 void ProgressDisplay::observe(const Simulation& simulation, const StageProgress& progress) {
-  if (quiet_) {
+  if (quiet_ || !visible_) {
     return;
   }
   if (progress.stage != stage_) {
@@ -88,7 +94,6 @@ void ProgressDisplay::observe(const Simulation& simulation, const StageProgress&
       return; // the first line of a stage comes when there is something to say
     }
   }
-  last_ = Clock::now();
   const std::string text = line(progress, simulation.totals().pressure, simulation.step());
   if (terminal_) {
     fmt::print("\r\x1b[K{}", text); // back to the line's beginning, clear it

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/dynamics/observer.h"
+#include "bpm/parallel/ranks.h"
 
 #include <chrono>
 #include <string>
@@ -13,7 +14,7 @@ namespace boba {
 class ProgressDisplay : public Observer {
 public:
   /// `modulus` > 0 shows pressures as P~ = P / modulus.
-  ProgressDisplay(double modulus, std::int64_t n_nodes, bool quiet);
+  ProgressDisplay(double modulus, std::int64_t n_nodes, bool quiet, const Ranks& ranks = Ranks::alone());
 
   bool wants(const StepForecast& forecast) override;
   void observe(const Simulation& simulation, const StageProgress& progress) override;
@@ -30,11 +31,13 @@ private:
   bool quiet_;
   bool terminal_;
   bool drawn_ = false;
+  bool visible_;    ///< rank 0 alone draws
   double interval_; ///< s
+  double last_seconds_ = 0.0; ///< of the forecast that was answered with yes
   int stage_ = -1;
   std::int64_t first_step_ = 0;
   double first_done_ = 0.0;
-  Clock::time_point stage_begin_, last_ = Clock::now();
+  Clock::time_point stage_begin_;
 };
 
 /// "2 h 05 min", "3 min 20 s", "12 s".

@@ -4,12 +4,17 @@
 #include <cstdio>
 #include <fmt/format.h>
 #include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/null_sink.h>
 #include <spdlog/spdlog.h>
 #include <stdexcept>
 
 namespace boba {
 
 RunLog::RunLog(const std::filesystem::path& file, bool quiet) : quiet_(quiet) {
+  if (file.empty()) {
+    logger_ = std::make_shared<spdlog::logger>("run", std::make_shared<spdlog::sinks::null_sink_mt>());
+    return;
+  }
   try {
     auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string());
     logger_ = std::make_shared<spdlog::logger>("run", sink);

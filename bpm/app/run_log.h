@@ -14,7 +14,7 @@ namespace boba {
 /// The log of a run: lines with time and level in run.log. What a person should see is printed as well.
 class RunLog {
 public:
-  /// Appends to the file. \throws std::runtime_error when it cannot be opened.
+  /// Appends to the file; "" for none. \throws std::runtime_error when it cannot be opened.
   RunLog(const std::filesystem::path& file, bool quiet);
 
   void note(const std::string& text);  ///< file only

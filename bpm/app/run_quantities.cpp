@@ -9,7 +9,7 @@ namespace boba {
 
 PackingNumbers::PackingNumbers(const Packing& packing, const Material& material,
                                std::optional<double> effective_modulus)
-    : modulus(effective_modulus), n_nodes(static_cast<std::int64_t>(packing.position.size())) {
+    : modulus(effective_modulus), n_nodes(packing.first_nodes().back()) {
   for (int g = 0; g < packing.n_grains(); ++g) {
     reference_volume += packing.template_of(g).reference_volume;
   }

@@ -16,6 +16,17 @@ namespace boba {
 
 namespace {
 
+/// Forces are the same bits on all ranks only if all compute them with the same instructions.
+void check_instruction_sets(const Simulation& simulation, const Ranks& ranks) {
+  std::string of_root = simulation.instruction_set();
+  ranks.broadcast(of_root);
+  if (of_root != simulation.instruction_set()) {
+    throw std::runtime_error(fmt::format("this rank's machine computes with {}, rank 0's with {}; set BOBA_ISA to what both "
+                                         "have (baseline, avx2 or avx512)",
+                                         simulation.instruction_set(), of_root));
+  }
+}
+
 /// Feeds the summary line with the steps that somebody else looks at.
 class SummaryObserver : public Observer {
 public:
@@ -41,13 +52,15 @@ private:
 /// One run: its simulation, its files, and the loop over the stages.
 class Session {
 public:
-  explicit Session(RunSetup setup)
-      : setup_(std::move(setup)), simulation_(std::move(setup_.packing), setup_.scene.material, setup_.scene.options),
+  Session(RunSetup setup, const Ranks& ranks)
+      : setup_(std::move(setup)), ranks_(ranks),
+        simulation_(std::move(setup_.packing), setup_.scene.material, options_on(ranks)),
         numbers_(simulation_.packing(), setup_.scene.material, setup_.modulus), stop_(setup_.scene.wall_time),
-        log_(setup_.folder.log(), setup_.quiet), summary_(numbers_),
-        progress_(setup_.modulus.value_or(0.0), numbers_.n_nodes, setup_.quiet) {
+        log_(ranks.is_root() ? setup_.folder.log() : "", setup_.quiet || !ranks.is_root()), summary_(numbers_),
+        progress_(setup_.modulus.value_or(0.0), numbers_.n_nodes, setup_.quiet, ranks) {
     if (setup_.restart) {
       simulation_.restore(setup_.restart->state);
+      setup_.restart->state = {};
     }
     writers_ = open_writers(setup_, simulation_, numbers_);
     const OutputPlan& plan = setup_.scene.output;
@@ -58,6 +71,7 @@ public:
   }
 
   ExitCode run() {
+    ranks_.together([&] { check_instruction_sets(simulation_, ranks_); });
     introduce();
     try {
       return run_stages();
@@ -70,6 +84,19 @@ public:
   }
 
 private:
+  SimulationOptions options_on(const Ranks& ranks) const {
+    SimulationOptions options = setup_.scene.options;
+    options.ranks = &ranks;
+    return options;
+  }
+
+  /// Returns the file, on rank 0. What goes wrong there, all hear of.
+  std::filesystem::path write_checkpoint() {
+    std::filesystem::path file;
+    ranks_.together([&] { file = checkpoints_->write(simulation_); });
+    return file;
+  }
+
   void introduce() {
     log_.note(version_text() + ", instruction set " + simulation_.instruction_set());
     for (const std::string& assignment : setup_.scene.overrides) {
@@ -78,8 +105,9 @@ private:
     const std::string begin = setup_.restart
                                   ? fmt::format("going on at step {} from {}", simulation_.step(), setup_.restart->file)
                                   : "starting";
-    log_.say(fmt::format("{}: {} grains, {} nodes, {} threads, {} precision, {}; {}", setup_.scene.title,
-                         simulation_.packing().n_grains(), numbers_.n_nodes, setup_.scene.options.threads,
+    const std::string on_ranks = ranks_.many() ? fmt::format("{} ranks of ", ranks_.size()) : "";
+    log_.say(fmt::format("{}: {} grains, {} nodes, {}{} threads, {} precision, {}; {}", setup_.scene.title,
+                         simulation_.packing().n_grains(), numbers_.n_nodes, on_ranks, setup_.scene.options.threads,
                          setup_.scene.options.precision == Precision::mixed ? "mixed" : "double",
                          simulation_.instruction_set(), begin));
   }
@@ -93,7 +121,7 @@ private:
     observers.push_back(&progress_);
     observers.push_back(checkpoints_.get()); // last: what it points back to is on disk
     if (!setup_.restart) {
-      checkpoints_->write(simulation_); // so that a run killed early can be resumed too
+      write_checkpoint(); // so that a run killed early can be resumed too
     }
     for (const SceneStage& stage : setup_.stages) {
       if (stage.index < simulation_.stage_index()) {
@@ -107,15 +135,21 @@ private:
       if (outcome == RunOutcome::stopped) {
         return stop();
       }
-      checkpoints_->write(simulation_);
+      write_checkpoint();
       log_.say(summary_.text(simulation_, fmt::format("stage.{} {}", stage.index, stage_name(stage.stage))));
     }
     return finish();
   }
 
+  /// Another rank may be the one that was told to.
+  std::string stop_reason() const {
+    const std::string own = stop_.reason();
+    return own.empty() ? "a signal to another rank" : own;
+  }
+
   ExitCode stop() {
-    const std::filesystem::path file = checkpoints_->write(simulation_);
-    log_.say(fmt::format("stopped by {} at step {}; checkpoint {}; go on with: boba resume {}", stop_.reason(),
+    const std::filesystem::path file = write_checkpoint();
+    log_.say(fmt::format("stopped by {} at step {}; checkpoint {}; go on with: boba resume {}", stop_reason(),
                          simulation_.step(), file.string(), setup_.folder.root().string()));
     return ExitCode::stopped;
   }
@@ -129,11 +163,17 @@ private:
         "seconds: bonds {:.2f}, contacts {:.2f}, search {:.2f}, integration {:.2f}, other {:.2f}; {} steps, {} "
         "contact lists",
         t.bonds, t.contacts, t.search, t.integration, t.other, t.steps, t.list_builds));
+    if (ranks_.many()) {
+      log_.note(fmt::format("rank 0: halo {:.2f} s, reductions {:.2f} s; received {} messages, {} bytes of nodes; {} halos, {} "
+                            "grains moved here",
+                            t.halo, t.reductions, t.halo_messages, t.halo_bytes, t.halo_builds, t.migrated_grains));
+    }
     log_.say(fmt::format("done at step {}; results in {}", simulation_.step(), setup_.folder.root().string()));
     return ExitCode::done;
   }
 
   RunSetup setup_;
+  const Ranks& ranks_;
   Simulation simulation_;
   PackingNumbers numbers_;
   StopRequest stop_;
@@ -146,8 +186,10 @@ private:
 
 } // namespace
 
-ExitCode run_scene(RunSetup setup) {
-  return Session(std::move(setup)).run();
+ExitCode run_scene(RunSetup setup, const Ranks& ranks) {
+  std::unique_ptr<Session> session;
+  ranks.together([&] { session = std::make_unique<Session>(std::move(setup), ranks); });
+  return session->run();
 }
 
 } // namespace boba

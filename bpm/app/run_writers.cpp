@@ -7,6 +7,7 @@
 #include "bpm/io/vtk.h"
 
 #include <filesystem>
+#include <optional>
 
 namespace boba {
 
@@ -77,6 +78,24 @@ std::shared_ptr<MeasureTables> measure_tables(const RunSetup& setup, const Simul
   return tables;
 }
 
+/// Observers that look when rank 0's writers look, in the same order, and write nothing.
+template <class MakeSchedule>
+void follow_writers(RunWriters& writers, const RunSetup& setup, const MakeSchedule& schedule) {
+  const auto add = [&](const OutputInterval& every, bool velocities) {
+    writers.frames.push_back(std::make_unique<FrameObserver>(
+        schedule(every), velocities, last_step_of(setup, writers.frames.size() + 1), [](const Snapshot&) {}));
+  };
+  const OutputPlan& plan = setup.scene.output;
+  for (const auto* output : {&plan.trajectory, &plan.dump, &plan.vtk}) {
+    if (*output) {
+      add((*output)->every, (*output)->velocities);
+    }
+  }
+  for (const SceneMeasure& entry : setup.scene.measures) {
+    add(entry.every, entry.plan.has(MeasureKind::stress));
+  }
+}
+
 } // namespace
 
 std::vector<std::int64_t> RunWriters::last_steps() const {
@@ -94,11 +113,19 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
     return Schedule(every, simulation.strain(), simulation.time());
   };
   const std::vector<std::string> columns = run_table_columns();
-  TableWriter table = setup.restart ? TableWriter::go_on(setup.folder.table(), columns, last_step_of(setup, 0))
-                                    : TableWriter(setup.folder.table(), columns);
+  const bool writes = simulation.ranks().is_root();
+  std::optional<TableWriter> table;
+  if (writes) {
+    table = setup.restart ? TableWriter::go_on(setup.folder.table(), columns, last_step_of(setup, 0))
+                          : TableWriter(setup.folder.table(), columns);
+  }
   writers.table =
       std::make_unique<TableObserver>(std::move(table), schedule(plan.table), numbers, last_step_of(setup, 0));
 
+  if (!writes) {
+    follow_writers(writers, setup, schedule);
+    return writers;
+  }
   const auto topology = std::make_shared<const Topology>(simulation.packing().topology(false));
   // Files are cut behind what the checkpoint knows of, not at its step: rows of the same step may have come later.
   const auto last_step = [&] { return last_step_of(setup, writers.frames.size() + 1); };

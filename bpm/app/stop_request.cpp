@@ -19,7 +19,7 @@ void remember(int signal) {
 }
 
 void install(void (*handler)(int)) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) {
     struct sigaction action {};
     action.sa_handler = handler;
     action.sa_flags = SA_RESTART; // writes under way are not cut short
@@ -45,7 +45,7 @@ bool StopRequest::pending() const {
 
 std::string StopRequest::reason() const {
   if (caught_signal != 0) {
-    return caught_signal == SIGINT ? "SIGINT" : "SIGTERM";
+    return caught_signal == SIGINT ? "SIGINT" : caught_signal == SIGTERM ? "SIGTERM" : "SIGUSR1";
   }
   return pending() ? fmt::format("the wall-time limit of {:g} s", *wall_time_) : "";
 }

@@ -7,10 +7,10 @@
 
 namespace boba {
 
-/// Why a run should stop now: SIGINT, SIGTERM, or its wall-time limit. A second SIGINT ends the program at once.
+/// Why a run should stop now: SIGINT, SIGTERM, SIGUSR1 (which mpirun and Slurm hand on to all ranks), or its wall-time limit. A second SIGINT ends the program at once.
 class StopRequest {
 public:
-  /// Takes over both signals until it is destroyed. `wall_time`: seconds from now.
+  /// Takes over the signals until it is destroyed. `wall_time`: seconds from now.
   explicit StopRequest(std::optional<double> wall_time);
   ~StopRequest();
   StopRequest(const StopRequest&) = delete;

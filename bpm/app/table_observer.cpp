@@ -53,6 +53,9 @@ void TableObserver::observe(const Simulation& simulation, const StageProgress& p
     return; // the end of one stage is the beginning of the next
   }
   last_step_ = simulation.step();
+  if (!writer_) {
+    return;
+  }
   const Totals& totals = simulation.totals();
   const Box& box = simulation.box();
   const auto [lower, upper] = simulation.end_forces();
@@ -77,7 +80,7 @@ void TableObserver::observe(const Simulation& simulation, const StageProgress& p
                                                         simulation.end_gap(),
                                                         0.5 * (lower + upper),
                                                         steps_per_second(simulation.step())};
-  writer_.write(simulation.step(), values);
+  writer_->write(simulation.step(), values);
 }
 
 } // namespace boba

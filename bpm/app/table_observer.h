@@ -7,6 +7,7 @@
 #include "bpm/io/table.h"
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,8 @@ std::vector<std::string> run_table_columns();
 /// Writes a row of table.csv at the ends of stages and whenever the schedule says so, each step once.
 class TableObserver : public Observer {
 public:
-  TableObserver(TableWriter writer, const Schedule& schedule, const PackingNumbers& numbers, std::int64_t last_step)
+  /// Without a writer it looks on and writes nothing.
+  TableObserver(std::optional<TableWriter> writer, const Schedule& schedule, const PackingNumbers& numbers, std::int64_t last_step)
       : writer_(std::move(writer)), schedule_(schedule), numbers_(numbers), last_step_(last_step),
         speed_step_(last_step) {}
 
@@ -31,7 +33,7 @@ private:
   double steps_per_second(std::int64_t step);
 
   using Clock = std::chrono::steady_clock;
-  TableWriter writer_;
+  std::optional<TableWriter> writer_;
   Schedule schedule_;
   PackingNumbers numbers_;
   std::int64_t last_step_, speed_step_;

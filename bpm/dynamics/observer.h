@@ -28,13 +28,15 @@ struct StepForecast {
   double time = 0.0;
   double strain = 0.0;
   bool last_of_stage = false; ///< true when the stage is known to end with this step
+  double seconds = 0.0;       ///< real time since the simulation was made, the same on all ranks
 };
 
 /// Something that looks at a run: writers, measures, the progress bar. The dynamics knows only this interface.
 class Observer {
 public:
   virtual ~Observer() = default;
-  /// Asked before every step: does this observer want to see it (with the full stress tensor evaluated)?
+  /// Asked before every step: does this observer want to see it (with the full stress tensor evaluated)? All ranks must
+  /// answer alike: whoever goes by real time takes the forecast's.
   virtual bool wants(const StepForecast& forecast) = 0;
   /// Called after each step it asked for, and with the state before the first and after the last step of every stage
   /// (the same step may thus come more than once).

@@ -9,6 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
 #include <stdexcept>
 
 namespace boba {
@@ -45,6 +48,7 @@ struct Simulation::Impl {
   int stage_index = 0;
   std::unique_ptr<StageDriver> driver;        ///< of the stage that is under way
   std::unique_ptr<SavedState> saved_in_stage; ///< a restored stage waits here for `run` to name it
+  double last_balance = 0.0;                  ///< s
 
   StageProgress progress(const Stage& stage) const {
     StageProgress progress = driver->progress(stepper);
@@ -56,7 +60,8 @@ struct Simulation::Impl {
   /// The observers that want the step to come.
   std::vector<Observer*> interested(std::span<Observer* const> observers, double rate) const {
     const StepForecast forecast = {stepper.step() + 1, static_cast<double>(stepper.step() + 1) * stepper.options().dt,
-                                   stepper.strain() + rate * stepper.options().dt, driver->steps_left(stepper) == 1};
+                                   stepper.strain() + rate * stepper.options().dt, driver->steps_left(stepper) == 1,
+                                   stepper.agreement().seconds()};
     std::vector<Observer*> wanting;
     for (Observer* observer : observers) {
       if (observer->wants(forecast)) {
@@ -74,15 +79,29 @@ struct Simulation::Impl {
     const Virial virial = full ? Virial::full : driver->needs_pressure() || look ? Virial::trace : Virial::none;
     stepper.advance(virial);
     if (look) {
-      stepper.check_alternation();
+      stepper.ranks().together([&] { stepper.check_alternation(); });
     }
     stepper.move_cell(driver->update(stepper));
     check_bonds();
     if (full) {
       totals = stepper.totals();
     }
-    for (Observer* observer : wanting) {
-      observer->observe(self, progress(stage));
+    show(wanting, stage, self);
+    balance();
+  }
+
+  /// What goes wrong while one rank writes must be known to all.
+  void show(std::span<Observer* const> observers, const Stage& stage, Simulation& self) const {
+    for (Observer* observer : observers) {
+      stepper.ranks().together([&] { observer->observe(self, progress(stage)); });
+    }
+  }
+
+  void balance() {
+    const double now = stepper.agreement().seconds();
+    if (stepper.ranks().many() && now - last_balance >= stepper.options().rebalance_seconds) {
+      stepper.rebalance();
+      last_balance = now;
     }
   }
 
@@ -107,9 +126,7 @@ struct Simulation::Impl {
       totals = stepper.totals();
     }
     driver->begin(stepper);
-    for (Observer* observer : observers) {
-      observer->observe(self, progress(stage));
-    }
+    show(observers, stage, self);
   }
 };
 
@@ -126,14 +143,13 @@ RunOutcome Simulation::run(int stage_index, const Stage& stage, std::span<Observ
   impl_->stage_index = stage_index;
   impl_->begin_stage(stage, observers, *this);
   while (!impl_->driver->finished()) {
-    if (stop && stop()) {
+    impl_->stepper.agreement().wish_to_stop(stop && stop());
+    if (impl_->stepper.agreement().stop()) {
       return RunOutcome::stopped;
     }
     impl_->take_step(stage, observers, *this);
   }
-  for (Observer* observer : observers) {
-    observer->observe(*this, impl_->progress(stage));
-  }
+  impl_->show(observers, stage, *this);
   impl_->driver->end(impl_->stepper);
   impl_->driver.reset();
   ++impl_->stage_index;
@@ -162,6 +178,9 @@ const Box& Simulation::box() const {
 }
 const Packing& Simulation::packing() const {
   return impl_->stepper.packing();
+}
+const Ranks& Simulation::ranks() const {
+  return impl_->stepper.ranks();
 }
 const Totals& Simulation::totals() const {
   return impl_->totals;
@@ -198,7 +217,39 @@ SavedState Simulation::save() const {
   return saved;
 }
 
-void Simulation::restore(const SavedState& state) {
+namespace {
+
+/// Names of the numbers that belong to single nodes; rank 0 alone has them.
+const std::set<std::string> node_names = {"position", "velocity", "force"};
+
+template <class Number>
+void share_small(std::map<std::string, std::vector<Number>>& numbers, const Ranks& ranks) {
+  std::string names;
+  for (const auto& [name, values] : numbers) {
+    names += node_names.contains(name) ? "" : name + "\n";
+  }
+  ranks.broadcast(names);
+  std::istringstream lines(names);
+  for (std::string name; std::getline(lines, name);) {
+    ranks.broadcast(numbers[name]);
+  }
+}
+
+/// Rank 0's state for all, but for the nodes.
+SavedState shared(SavedState state, const Ranks& ranks) {
+  if (!ranks.is_root()) {
+    state = {};
+  }
+  share_small(state.real, ranks);
+  share_small(state.integer, ranks);
+  return state;
+}
+
+} // namespace
+
+void Simulation::restore(const SavedState& of_root) {
+  const SavedState of_all = ranks().many() ? shared(of_root, ranks()) : SavedState{};
+  const SavedState& state = ranks().many() ? of_all : of_root;
   try {
     impl_->stepper.restore(state);
     impl_->stage_index = static_cast<int>(state.integer.at("stage").at(0));
@@ -212,10 +263,10 @@ void Simulation::restore(const SavedState& state) {
     impl_->saved_in_stage.reset();
     if (state.integer.at("stage").at(1) != 0) {
       impl_->saved_in_stage = std::make_unique<SavedState>(state);
-      impl_->saved_in_stage->real.erase("x");
-      impl_->saved_in_stage->real.erase("v");
-      impl_->saved_in_stage->real.erase("f");
-      impl_->saved_in_stage->integer.erase("x");
+      for (const std::string& name : node_names) {
+        impl_->saved_in_stage->real.erase(name);
+        impl_->saved_in_stage->integer.erase(name);
+      }
     }
   } catch (const std::out_of_range&) {
     throw std::runtime_error("saved state: a number is missing; it was written by another version of Boba");

@@ -7,6 +7,7 @@
 #include "bpm/packing/lane_layout.h"
 #include "bpm/packing/packing.h"
 #include "bpm/packing/snapshot.h"
+#include "bpm/parallel/ranks.h"
 
 #include <array>
 #include <functional>
@@ -24,6 +25,8 @@ struct SimulationOptions {
   int threads = 1;
   double skin = 0.3; ///< d; margin of the contact list
   Precision precision = Precision::full;
+  const Ranks* ranks = &Ranks::alone(); ///< must outlive the simulation
+  double rebalance_seconds = 60.0;      ///< between two looks at how the work is spread over the ranks; 0: every step
 };
 
 /// Sums over the packing at the present step. Stress: tension positive, xx yy zz xy xz yz, k/d.
@@ -39,7 +42,9 @@ struct Totals {
 /// Seconds spent in each part of the steps so far, for the benchmark and the log.
 struct Timings {
   double bonds = 0.0, contacts = 0.0, search = 0.0, integration = 0.0, other = 0.0;
+  double halo = 0.0, reductions = 0.0; ///< waiting for other ranks: for their nodes, for what all must know
   std::int64_t steps = 0, list_builds = 0;
+  std::int64_t halo_messages = 0, halo_bytes = 0, halo_builds = 0, migrated_grains = 0; ///< received by this rank
 };
 
 /// A blow-up: the run cannot go on. The message names node, grain, step and a likely cause.
@@ -58,6 +63,9 @@ struct SavedState {
 };
 
 /// A packing in motion: the engine's only public face.
+///
+/// With several ranks, all make the same calls, and everything but the mere looks (step, time, box, totals ...) is
+/// collective. Whole packings are handed out to rank 0 alone.
 class Simulation {
 public:
   /// \throws std::invalid_argument for a packing or an option outside its range.
@@ -80,7 +88,9 @@ public:
   double time() const;
   double strain() const;
   const Box& box() const;
-  const Packing& packing() const; ///< as it was at the start; templates and grains do not change
+  /// As it was at the start; templates and grains do not change. Only rank 0 keeps ids, positions and velocities.
+  const Packing& packing() const;
+  const Ranks& ranks() const;
   const Totals& totals() const;   ///< of the last step an observer asked for
   Timings timings() const;
   std::string instruction_set() const; ///< "avx512", "avx2" or "baseline"
@@ -89,6 +99,7 @@ public:
     bool velocity = false;
     bool force = false;
   };
+  /// Nodes and stresses of grains are there on rank 0 alone.
   Snapshot snapshot(Parts parts) const;
   Snapshot snapshot() const { return snapshot(Parts{}); }
   /// Forces on the two ends of a `press` stage, along z (k d): lower, upper.
@@ -96,8 +107,9 @@ public:
   /// Distance between the two ends (walls or clamps) at present, d; 0 when there are none.
   double end_gap() const;
 
+  /// Everything is there on rank 0 alone; the same for any number of ranks.
   SavedState save() const;
-  /// \throws std::runtime_error when the state does not belong to this packing.
+  /// Rank 0's state for all. \throws std::runtime_error when the state does not belong to this packing.
   void restore(const SavedState& state);
   /// Index of the stage that a restored state is in (or that comes next).
   int stage_index() const;

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace boba {
 
@@ -20,12 +22,61 @@ constexpr double least_smoothness = 0.25;
 /// d a step, root mean square over a block. Below it a few nodes at most may do that, at the ends of a bond that collapsed.
 constexpr double least_motion = 3e-3;
 
+std::vector<Vector3> fractional_centres(const Packing& packing) {
+  std::vector<Vector3> centres;
+  const std::vector<std::int64_t> first = packing.first_nodes();
+  for (int g = 0; g < packing.n_grains(); ++g) {
+    Vector3 sum = Vector3::Zero();
+    for (std::int64_t node = first[g]; node < first[g + 1]; ++node) {
+      sum += packing.position[node];
+    }
+    centres.push_back(packing.box.to_fractional(sum / static_cast<double>(first[g + 1] - first[g])));
+  }
+  return centres;
+}
+
+std::vector<int> nodes_of_grains(const Packing& packing) {
+  std::vector<int> n_nodes;
+  for (int g = 0; g < packing.n_grains(); ++g) {
+    n_nodes.push_back(packing.template_of(g).n_nodes());
+  }
+  return n_nodes;
+}
+
+Distribution first_distribution(const Packing& packing, const SimulationOptions& options) {
+  if (!options.ranks->many()) {
+    return {};
+  }
+  const std::vector<int> n_nodes = nodes_of_grains(packing);
+  const PlacementInput input = {&packing, options.ranks->size(), lanes_of_block(options.precision),
+                                fractional_centres(packing), {n_nodes.begin(), n_nodes.end()}};
+  return {options.ranks, Ownership(place_grains(input), options.ranks->size(), n_nodes)};
+}
+
+std::vector<int> grains_in_order(const Packing& packing, const Distribution& distribution) {
+  if (!distribution.many()) {
+    std::vector<int> all(packing.n_grains());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+  return along_curve(distribution.ownership.grains_of(distribution.ranks->rank()), fractional_centres(packing));
+}
+
 } // namespace
 
 Stepper::Stepper(Packing packing, const Material& material, const SimulationOptions& options)
-    : packing_(std::move(packing)), material_(material), options_(options), layout_(packing_, options.precision),
-      state_(packing_, layout_), forces_(packing_, layout_, material, options.skin), box_(packing_.box) {
+    : packing_(std::move(packing)), material_(material), options_(options),
+      distribution_(first_distribution(packing_, options)), agreement_(*options.ranks),
+      layout_(packing_, options.precision, grains_in_order(packing_, distribution_)), state_(packing_, layout_),
+      forces_(packing_, layout_, material, options.skin, distribution_), box_(packing_.box) {
   omp_set_num_threads(options.threads);
+  if (!options.ranks->is_root()) { // rank 0 alone writes
+    for (std::vector<Vector3>* big : {&packing_.position, &packing_.velocity}) {
+      std::vector<Vector3>().swap(*big);
+    }
+    std::vector<std::int64_t>().swap(packing_.id);
+  }
+  agreement_.begin();
 }
 
 void Stepper::evaluate(Evaluation what) {
@@ -34,8 +85,11 @@ void Stepper::evaluate(Evaluation what) {
   forces_kept_ = what.keep_forces;
   evaluated_volume_ = box_.volume();
   for (Clamp& clamp : clamps_) {
-    apply_clamp(clamp, state_);
+    apply_clamp(clamp, layout_, state_, distribution_);
   }
+  const double begin = omp_get_wtime();
+  forces_.share_sums(what.virial);
+  reduction_seconds_ += omp_get_wtime() - begin;
   if (what.virial != Virial::none) {
     sum_up();
   }
@@ -54,7 +108,7 @@ void Stepper::start() {
 void Stepper::advance(Virial virial) {
   drift();
   if ((step_ + 1) % recentre_interval == 0) {
-    const double share = state_.recentre();
+    const double share = distribution_.ranks->largest(state_.recentre());
     if (share > largest_range_share) {
       throw BlowUp(describe_torn_grain(share, step_ + 1, options_.dt));
     }
@@ -82,21 +136,34 @@ void Stepper::drift() {
   drift.dither_seed = static_cast<std::uint64_t>(step_ + 1) << 32; // the kernel adds the node's number
   state_.map_origins(position_map_, shift);
   const std::vector<kernels::DriftResult> results = forces_.drift(state_, drift);
-  check_drift(results);
-  double speed2 = 0.0;
   half_step_speed2_.clear();
   for (const kernels::DriftResult& result : results) {
-    speed2 = std::max(speed2, result.largest_speed2);
     half_step_speed2_.push_back(result.checksum);
   }
-  forces_.contact_list().note_motion(cell_map_, options_.dt * std::sqrt(speed2));
+  const double drifted = omp_get_wtime();
+  integration_seconds_ += drifted - begin;
+  const double speed = agreement_.exchange(largest_speed(results));
+  reduction_seconds_ += omp_get_wtime() - drifted;
+  if (!(speed <= largest_allowed_speed())) {
+    distribution_.ranks->together([&] { check_drift(results); });
+  }
+  forces_.contact_list().note_motion(cell_map_, options_.dt * speed);
   cell_map_.setIdentity();
   position_map_.setIdentity();
-  integration_seconds_ += omp_get_wtime() - begin;
+}
+
+/// Of this rank's nodes; beyond all limits when one has no finite velocity.
+double Stepper::largest_speed(const std::vector<kernels::DriftResult>& results) const {
+  double speed2 = 0.0;
+  for (const kernels::DriftResult& result : results) {
+    speed2 = std::isfinite(result.checksum) ? std::max(speed2, result.largest_speed2)
+                                            : std::numeric_limits<double>::infinity();
+  }
+  return std::sqrt(speed2);
 }
 
 void Stepper::check_drift(const std::vector<kernels::DriftResult>& results) const {
-  const double limit = 0.5 * material_.diameter / options_.dt;
+  const double limit = largest_allowed_speed();
   for (std::size_t b = 0; b < results.size(); ++b) {
     if (!std::isfinite(results[b].checksum) || results[b].largest_speed2 > limit * limit) {
       throw BlowUp(describe_fast_node(layout_.blocks()[b], state_, step_ + 1, options_.dt, material_));
@@ -164,7 +231,7 @@ void Stepper::deform_cell(const Matrix3& gradient, const Matrix3& of_positions) 
 }
 
 void Stepper::add_streaming(double rate, double sign) {
-  for (int g = 0; g < layout_.n_grains(); ++g) {
+  for (const int g : layout_.grains()) {
     for (int node = 0; node < layout_.n_nodes(g); ++node) {
       const double y = state_.position(g, node)[1] - box_.origin()[1];
       state_.set_velocity(g, node, state_.velocity(g, node) + Vector3(sign * rate * y, 0.0, 0.0));
@@ -177,7 +244,7 @@ double Stepper::virial_pressure_when_scaled(const std::vector<Vector3>& x, doubl
   const Matrix3 map = factor * position_map_;
   const Vector3 shift = box_.origin() - map * box_.origin();
   std::size_t next = 0;
-  for (int g = 0; g < layout_.n_grains(); ++g) {
+  for (const int g : layout_.grains()) {
     for (int node = 0; node < layout_.n_nodes(g); ++node) {
       state_.set_position(g, node, map * x[next++] + shift);
     }
@@ -186,6 +253,7 @@ double Stepper::virial_pressure_when_scaled(const std::vector<Vector3>& x, doubl
   scaled_box.set_h(factor * box_.h());
   forces_.contact_list().invalidate();
   forces_.evaluate(state_, scaled_box, {.virial = Virial::trace, .residual_rate = residual_rate_});
+  forces_.share_sums(Virial::trace);
   double virial = 0.0;
   for (const GrainSums& grain : forces_.grain_sums()) {
     virial += grain.virial_trace;
@@ -196,7 +264,7 @@ double Stepper::virial_pressure_when_scaled(const std::vector<Vector3>& x, doubl
 double Stepper::affine_bulk_modulus() {
   const LaneState before = state_;
   std::vector<Vector3> x;
-  for (int g = 0; g < layout_.n_grains(); ++g) {
+  for (const int g : layout_.grains()) {
     for (int node = 0; node < layout_.n_nodes(g); ++node) {
       x.push_back(state_.position(g, node));
     }
@@ -215,7 +283,7 @@ double Stepper::affine_bulk_modulus() {
 }
 
 double Stepper::sound_crossing(double bulk_modulus) const {
-  const double mass = static_cast<double>(packing_.position.size()) * material_.node_mass;
+  const double mass = static_cast<double>(packing_.first_nodes().back()) * material_.node_mass;
   const double speed = std::sqrt(bulk_modulus * box_.volume() / mass);
   return box_.lengths().minCoeff() / speed;
 }
@@ -228,18 +296,25 @@ Timings Stepper::timings() const {
   timings.integration = integration_seconds_;
   timings.steps = step_;
   timings.list_builds = forces_.contact_list().counts().grains;
+  timings.halo = forces_.halo_seconds;
+  timings.reductions = reduction_seconds_;
+  const ContactHalo::Traffic& traffic = forces_.halo().traffic();
+  timings.halo_messages = traffic.messages;
+  timings.halo_bytes = traffic.bytes;
+  timings.halo_builds = traffic.rebuilds;
+  timings.migrated_grains = migrated_grains_;
   return timings;
 }
 
 std::array<double, 2> Stepper::extent_z() const {
   std::array<double, 2> extent = {1e300, -1e300};
-  for (int g = 0; g < layout_.n_grains(); ++g) {
+  for (const int g : layout_.grains()) {
     for (int node = 0; node < layout_.n_nodes(g); ++node) {
       const double z = state_.position(g, node)[2];
       extent = {std::min(extent[0], z), std::max(extent[1], z)};
     }
   }
-  return extent;
+  return {distribution_.ranks->smallest(extent[0]), distribution_.ranks->largest(extent[1])};
 }
 
 } // namespace boba

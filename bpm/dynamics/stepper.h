@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/dynamics/agreement.h"
 #include "bpm/dynamics/barostat.h"
 #include "bpm/dynamics/clamp.h"
 #include "bpm/dynamics/simulation.h"
 #include "bpm/forces/force_field.h"
 #include "bpm/packing/lane_state.h"
+#include "bpm/parallel/distribution.h"
+#include "bpm/parallel/placement.h"
+#include "bpm/parallel/star_forest.h"
 
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace boba {
@@ -76,15 +82,24 @@ public:
   double time() const { return static_cast<double>(step_) * options_.dt; }
   double strain() const { return strain_; }
   double node_diameter() const { return material_.diameter; }
-  ForceField::Stretch largest_stretch() const { return forces_.largest_stretch(state_, box_); }
+  /// Over all ranks' grains.
+  ForceField::Stretch largest_stretch() const;
   std::vector<Clamp>& clamps() { return clamps_; }
   void set_clamps(std::vector<Clamp> clamps) { clamps_ = std::move(clamps); }
   /// All nodes with z in [low, high] as a clamp at rest.
-  Clamp nodes_between(double low, double high) const { return clamp_between(low, high, layout_, state_); }
+  Clamp nodes_between(double low, double high) const;
   /// Force of the material on the lower and the upper end (walls or clamps), positive when it pushes them apart, k d.
   std::array<double, 2> end_forces() const;
   double end_gap() const { return end_gap_; }
   void set_end_gap(double gap) { end_gap_ = gap; }
+  const Ranks& ranks() const { return *distribution_.ranks; }
+  Agreement& agreement() { return agreement_; }
+  const Agreement& agreement() const { return agreement_; }
+  const Distribution& distribution() const { return distribution_; }
+  /// Gives grains other owners; nothing else changes. Collective.
+  void move_grains(std::vector<int> owner);
+  /// Looks whether the work is spread evenly by what it has cost lately, and moves grains if that gains enough.
+  void rebalance();
   Timings timings() const;
   /// Memory of everything that grows with the number of grains: state, contact list, the packing as it began.
   std::size_t bytes() const;
@@ -94,11 +109,21 @@ public:
   void restore(const SavedState& saved);
 
 private:
+  PlacementInput placement_input() const;
+  std::vector<std::byte> gathered_nodes() const;
+  void scatter_nodes(const std::vector<std::byte>& all);
+  /// Values of this rank's nodes become those of all nodes, on rank 0.
+  void gather(std::vector<Vector3>& values) const;
+  /// A value a grain, known to its owner, for all.
+  void share_grains(std::vector<Vector3>& values) const;
+  std::unique_ptr<StarForest> forest_from_root() const;
   void save_nodes(SavedState& saved) const;
   void restore_nodes(const SavedState& saved);
   void save_ends(SavedState& saved) const;
   void restore_ends(const SavedState& saved);
   void drift();
+  double largest_allowed_speed() const { return 0.5 * material_.diameter / options_.dt; }
+  double largest_speed(const std::vector<kernels::DriftResult>& results) const;
   void check_drift(const std::vector<kernels::DriftResult>& results) const;
   void evaluate(Evaluation what);
   void sum_up();
@@ -107,6 +132,8 @@ private:
   Packing packing_;
   Material material_;
   SimulationOptions options_;
+  Distribution distribution_;
+  Agreement agreement_;
   LaneLayout layout_;
   LaneState state_;
   ForceField forces_;
@@ -124,6 +151,9 @@ private:
   double evaluated_volume_ = 1.0;              ///< of the cell that the last forces belong to
   double pressure_ = 0.0, kinetic_energy_ = 0.0;
   double integration_seconds_ = 0.0;
+  mutable double reduction_seconds_ = 0.0;
+  double worked_until_ = 0.0; ///< seconds of work at the last look at the balance
+  std::int64_t migrated_grains_ = 0;
 };
 
 } // namespace boba

@@ -2,9 +2,8 @@
 // What a stepper hands out and stores: totals, snapshots, saved states.
 #include "bpm/dynamics/stepper.h"
 
-#include <algorithm>
+#include <cstring>
 #include <stdexcept>
-#include <type_traits>
 
 namespace boba {
 
@@ -17,8 +16,9 @@ Totals Stepper::totals() const {
   }
   totals.pressure = pressure_;
   totals.kinetic_energy = kinetic_energy_;
-  totals.elastic_energy = bond_energy() + forces_.contact_totals().energy;
-  totals.largest_overlap = forces_.contact_totals().largest_overlap;
+  const ContactTotals contacts = forces_.contact_totals();
+  totals.elastic_energy = bond_energy() + contacts.energy;
+  totals.largest_overlap = contacts.largest_overlap;
   return totals;
 }
 
@@ -36,9 +36,9 @@ Snapshot Stepper::snapshot(Simulation::Parts parts) const {
   snapshot.box = box_;
   const Vector3 shift = box_.origin() - position_map_ * box_.origin();
   const double back = started_ ? -0.5 * options_.dt / material_.node_mass : 0.0;
-  snapshot.position.reserve(packing_.position.size());
-  for (int g = 0; g < layout_.n_grains(); ++g) {
-    Vector3 centre = Vector3::Zero();
+  snapshot.grain_centre.assign(layout_.n_grains(), Vector3::Zero());
+  for (const int g : layout_.grains()) {
+    Vector3& centre = snapshot.grain_centre[g];
     for (int node = 0; node < layout_.n_nodes(g); ++node) {
       const Vector3 x = state_.position(g, node);
       snapshot.position.push_back(position_map_ * x + shift);
@@ -50,7 +50,17 @@ Snapshot Stepper::snapshot(Simulation::Parts parts) const {
         snapshot.force.push_back(state_.force(g, node));
       }
     }
-    snapshot.grain_centre.push_back(centre / layout_.n_nodes(g));
+    centre /= layout_.n_nodes(g);
+  }
+  gather(snapshot.position);
+  if (parts.velocity) {
+    gather(snapshot.velocity);
+  }
+  if (parts.force) {
+    gather(snapshot.force);
+  }
+  share_grains(snapshot.grain_centre);
+  for (int g = 0; g < layout_.n_grains(); ++g) {
     const GrainSums& sums = forces_.grain_sums()[g];
     std::array<double, 6> stress;
     // The cell has moved since the forces: scaled so that the grains' sum over the snapshot's volume is the stress.
@@ -81,13 +91,44 @@ Matrix3 matrix(const std::vector<double>& numbers) {
   return Eigen::Map<const Matrix3>(numbers.data());
 }
 
-template <class Array, class Number> void copy_into(Array& to, const std::vector<Number>& from, const char* name) {
-  if (from.size() != to.size()) {
-    throw std::runtime_error(std::string("saved state: ") + name + " belongs to another packing or precision (" +
-                             std::to_string(from.size()) + " numbers, " + std::to_string(to.size()) + " expected)");
+/// Takes the next number of type T from packed nodes.
+template <class T> T next(const std::byte*& from) {
+  T value;
+  std::memcpy(&value, from, sizeof value);
+  from += sizeof value;
+  return value;
+}
+
+/// Packed nodes (x v f of each component in turn) as columns of numbers.
+template <class Coordinate, class Real, class Stored>
+void unpack_columns(const std::vector<std::byte>& nodes, std::vector<Stored>& x, std::vector<double>& v,
+                    std::vector<double>& f) {
+  for (const std::byte* from = nodes.data(); from != nodes.data() + nodes.size();) {
+    x.push_back(static_cast<Stored>(next<Coordinate>(from)));
+    v.push_back(next<Real>(from));
+    f.push_back(next<Real>(from));
   }
-  std::transform(from.begin(), from.end(), to.begin(),
-                 [](Number number) { return static_cast<typename Array::value_type>(number); });
+}
+
+template <class Coordinate, class Real, class Stored>
+std::vector<std::byte> pack_columns(const std::vector<Stored>& x, const std::vector<double>& v,
+                                    const std::vector<double>& f, std::size_t n) {
+  if (x.size() != n || v.size() != n || f.size() != n) {
+    throw std::runtime_error("saved state: the nodes belong to another packing or precision (" +
+                             std::to_string(x.size()) + " coordinates, " + std::to_string(n) + " expected)");
+  }
+  std::vector<std::byte> nodes(n * (sizeof(Coordinate) + 2 * sizeof(Real)));
+  std::byte* to = nodes.data();
+  const auto put = [&](auto value) {
+    std::memcpy(to, &value, sizeof value);
+    to += sizeof value;
+  };
+  for (std::size_t k = 0; k < n; ++k) {
+    put(static_cast<Coordinate>(x[k]));
+    put(static_cast<Real>(v[k]));
+    put(static_cast<Real>(f[k]));
+  }
+  return nodes;
 }
 
 } // namespace
@@ -104,38 +145,41 @@ void Stepper::save(SavedState& saved) const {
   save_ends(saved);
 }
 
+// Node by node in the packing's order: the same whatever the lanes and the ranks.
 void Stepper::save_nodes(SavedState& saved) const {
-  state_.visit([&](const auto& arrays) {
-    if constexpr (std::is_integral_v<typename std::remove_reference_t<decltype(arrays)>::Coordinate>) {
-      saved.integer["x"] = {arrays.x.begin(), arrays.x.end()};
-      for (const Vector3& origin : state_.origins()) {
-        saved.real["origin"].insert(saved.real["origin"].end(), origin.data(), origin.data() + 3);
-      }
-    } else {
-      saved.real["x"] = {arrays.x.begin(), arrays.x.end()};
-    }
-    saved.real["v"] = {arrays.v.begin(), arrays.v.end()};
-    saved.real["f"] = {arrays.f.begin(), arrays.f.end()};
-  });
+  const std::vector<std::byte> nodes = gathered_nodes();
+  if (options_.precision == Precision::full) {
+    unpack_columns<double, double>(nodes, saved.real["position"], saved.real["velocity"], saved.real["force"]);
+    return;
+  }
+  unpack_columns<std::int32_t, float>(nodes, saved.integer["position"], saved.real["velocity"], saved.real["force"]);
+  std::vector<Vector3> origins = state_.origins();
+  share_grains(origins);
+  saved.real["origin"] = {origins.front().data(), origins.front().data() + 3 * origins.size()};
 }
 
 void Stepper::restore_nodes(const SavedState& saved) {
-  state_.visit([&](auto& arrays) {
-    if constexpr (std::is_integral_v<typename std::remove_reference_t<decltype(arrays)>::Coordinate>) {
-      copy_into(arrays.x, saved.integer.at("x"), "x");
-      const std::vector<double>& origins = saved.real.at("origin");
-      if (origins.size() != 3 * state_.origins().size()) {
-        throw std::runtime_error("saved state: the grains' origins belong to another packing");
-      }
-      for (std::size_t g = 0; g < state_.origins().size(); ++g) {
-        state_.origins()[g] = Eigen::Map<const Vector3>(&origins[3 * g]);
-      }
-    } else {
-      copy_into(arrays.x, saved.real.at("x"), "x");
+  std::vector<std::byte> nodes;
+  ranks().together([&] {
+    if (!ranks().is_root()) {
+      return;
     }
-    copy_into(arrays.v, saved.real.at("v"), "v");
-    copy_into(arrays.f, saved.real.at("f"), "f");
+    const auto n = static_cast<std::size_t>(3 * packing_.first_nodes().back());
+    const std::vector<double>&v = saved.real.at("velocity"), &f = saved.real.at("force");
+    nodes = options_.precision == Precision::full
+                ? pack_columns<double, double>(saved.real.at("position"), v, f, n)
+                : pack_columns<std::int32_t, float>(saved.integer.at("position"), v, f, n);
   });
+  scatter_nodes(nodes);
+  if (options_.precision == Precision::mixed) {
+    const std::vector<double>& origins = saved.real.at("origin");
+    if (origins.size() != 3 * state_.origins().size()) {
+      throw std::runtime_error("saved state: the grains' origins belong to another packing");
+    }
+    for (std::size_t g = 0; g < state_.origins().size(); ++g) {
+      state_.origins()[g] = Eigen::Map<const Vector3>(&origins[3 * g]);
+    }
+  }
 }
 
 void Stepper::save_ends(SavedState& saved) const {

@@ -31,10 +31,11 @@ void for_each_bond(const NetworkData& data, const LaneState& state, const Box& b
 double ForceField::bond_energy(const LaneState& state, const Box& box) const {
   std::vector<double> energy(layout_.n_grains(), 0.0);
 #pragma omp parallel for schedule(dynamic, 8)
-  for (int g = 0; g < layout_.n_grains(); ++g) {
+  for (const int g : layout_.grains()) {
     for_each_bond(*network_of_grain_[g], state, box, g,
                   [&](int, double r, double r0) { energy[g] += boba::bond_energy(material_.k, r, r0); });
   }
+  distribution_.ranks->share_rows(energy, 1, distribution_.ownership);
   double total = 0.0;
   for (const double e : energy) { // grain by grain: the same sum for any number of threads
     total += e;
@@ -45,7 +46,7 @@ double ForceField::bond_energy(const LaneState& state, const Box& box) const {
 ForceField::Stretch ForceField::largest_stretch(const LaneState& state, const Box& box) const {
   std::vector<Stretch> largest(layout_.n_grains());
 #pragma omp parallel for schedule(dynamic, 8)
-  for (int g = 0; g < layout_.n_grains(); ++g) {
+  for (const int g : layout_.grains()) {
     for_each_bond(*network_of_grain_[g], state, box, g, [&](int node, double r, double r0) {
       if (!(r / r0 <= largest[g].ratio)) { // also true for NaN
         largest[g] = {r / r0, g, node};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -23,9 +24,11 @@ Vector3 lattice_vector(const Box& box, const ImageVector& n) {
 
 } // namespace
 
-ContactList::ContactList(const LaneLayout& layout, const kernels::KernelTable& table, double diameter, double skin)
+ContactList::ContactList(const LaneLayout& layout, const kernels::KernelTable& table, double diameter, double skin,
+                         const Distribution& distribution)
     : layout_(layout), table_(table), diameter_(diameter), skin_(skin), skin_between_(between_share * skin),
-      place_(layout.size(), 0.0f), grains_(layout.n_grains()), sides_(layout.n_grains()) {
+      distribution_(distribution) {
+  layout_changed();
   for (const Block& block : layout.blocks()) {
     if (static_cast<std::int64_t>(block.n_nodes) * block.n_lanes > std::numeric_limits<std::int32_t>::max()) {
       throw std::invalid_argument("contact list: a grain has more than 2.6e8 nodes, the most that are handled");
@@ -35,6 +38,15 @@ ContactList::ContactList(const LaneLayout& layout, const kernels::KernelTable& t
     bounds_margin_ = bounds_margin_of_nodes;
     neighbour_margin_ = neighbour_margin_of_nodes;
   }
+}
+
+void ContactList::layout_changed() {
+  place_.assign(layout_.size(), 0.0f);
+  grains_.assign(layout_.n_grains(), {});
+  sides_.assign(layout_.n_grains(), {});
+  pairs_.clear();
+  ghosts_.clear();
+  invalidate();
 }
 
 bool ContactList::update(const LaneState& state, const Box& box, const Networks& network_of_grain) {
@@ -48,6 +60,7 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
     find_neighbours(box);
     guaranteed = neighbour_guarantee(box);
   }
+  follow_ghosts();
   const int n_pairs = static_cast<int>(pairs_.size());
   std::int64_t searched = 0;
 #pragma omp parallel for schedule(dynamic, 4) reduction(min : guaranteed) reduction(+ : searched)
@@ -67,22 +80,26 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
   ++counts_.updates;
   counts_.pairs += searched;
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int g = 0; g < layout_.n_grains(); ++g) {
-    if (std::any_of(sides_[g].begin(), sides_[g].end(),
-                    [&](const ContactSide& side) { return pairs_[side.pair].changed; })) {
-      grains_[g].listed = nodes_in(g, &ContactPair::candidates);
-    }
+  for (const int g : layout_.grains()) {
+    relist(g);
+  }
+#pragma omp parallel for schedule(dynamic, 1)
+  for (const int g : ghosts_) {
+    relist(g);
   }
   for (ContactPair& pair : pairs_) {
     pair.changed = false;
   }
+  for (const int g : layout_.grains()) {
+    counts_.grains += grains_[g].anew ? 1 : 0;
+    counts_.nodes += static_cast<std::int64_t>(grains_[g].moved.size());
+  }
   for (TrackedGrain& grain : grains_) {
-    counts_.grains += grain.anew ? 1 : 0;
-    counts_.nodes += static_cast<std::int64_t>(grain.moved.size());
     grain.anew = false;
     grain.moved.clear();
+    grain.moved_to.clear();
   }
-  guaranteed_ = guaranteed;
+  guaranteed_ = distribution_.ranks->smallest(guaranteed);
   crept_ = 0.0;
   cell_since_tracking_ = Matrix3::Identity();
   built_ = true;
@@ -100,38 +117,43 @@ void ContactList::note_motion(const Matrix3& cell_map, double displacement) {
 void ContactList::find_neighbours(const Box& box) {
   const int n_grains = layout_.n_grains();
   std::vector<Bounds> bounds(n_grains);
-  for (int g = 0; g < n_grains; ++g) {
+  for (const int g : layout_.grains()) {
     TrackedGrain& grain = grains_[g];
     bounds[g] = grain.grid.bounds().widened(bounds_margin_).mapped(grain.frame).widened(grain.stray);
     grain.neighbour_frame = grain.frame;
   }
-  std::vector<std::vector<NeighbourGrain>> neighbours(n_grains);
+  share_bounds(bounds);
+  std::vector<ContactPair> found;
 #pragma omp parallel for schedule(dynamic, 8)
-  for (int g = 0; g < n_grains; ++g) {
-    neighbours[g] = neighbour_grains(g, bounds, box, reach_between() + neighbour_margin_);
-    neighbours[g].push_back({g, {}});
-    std::erase_if(neighbours[g], [&](const NeighbourGrain& other) {
-      return other.other < g || (other.other == g && other.image < ImageVector{});
-    });
-    std::sort(neighbours[g].begin(), neighbours[g].end(), [](const NeighbourGrain& x, const NeighbourGrain& y) {
-      return std::tie(x.other, x.image) < std::tie(y.other, y.image);
-    });
+  for (const int g : layout_.grains()) {
+    std::vector<ContactPair> of_grain = {ContactPair{g, g, {}}};
+    for (const auto& [other, image] : neighbour_grains(g, bounds, box, reach_between() + neighbour_margin_)) {
+      if (other > g || (other == g && image > ImageVector{})) {
+        of_grain.push_back({g, other, image});
+      } else if (other < g && !layout_.holds(other)) { // the other's rank has it the same way round
+        of_grain.push_back({other, g, {-image.a, -image.b, -image.c}});
+      }
+    }
+#pragma omp critical
+    std::move(of_grain.begin(), of_grain.end(), std::back_inserter(found));
   }
+  const auto key = [](const ContactPair& pair) { return std::make_tuple(pair.a, pair.b, pair.image); };
+  std::sort(found.begin(), found.end(), [&](const ContactPair& x, const ContactPair& y) { return key(x) < key(y); });
   std::map<std::tuple<int, int, ImageVector>, ContactPair> known;
   for (ContactPair& pair : pairs_) {
-    known[{pair.a, pair.b, pair.image}] = std::move(pair);
+    known[key(pair)] = std::move(pair);
   }
-  pairs_.clear();
+  pairs_ = std::move(found);
   sides_.assign(n_grains, {});
-  for (int g = 0; g < n_grains; ++g) {
-    for (const NeighbourGrain& other : neighbours[g]) {
-      const auto old = built_ ? known.find({g, other.other, other.image}) : known.end();
-      const int index = static_cast<int>(pairs_.size());
-      pairs_.push_back(old != known.end() ? std::move(old->second) : ContactPair{g, other.other, other.image});
-      sides_[g].push_back({index, 1.0});
-      sides_[other.other].push_back({index, -1.0});
+  for (int index = 0; index < static_cast<int>(pairs_.size()); ++index) {
+    ContactPair& pair = pairs_[index];
+    if (const auto old = built_ ? known.find(key(pair)) : known.end(); old != known.end()) {
+      pair = std::move(old->second);
     }
+    sides_[pair.a].push_back({index, 1.0});
+    sides_[pair.b].push_back({index, -1.0});
   }
+  find_ghosts();
   for (ContactPair& pair : pairs_) {
     pair.changed = true;
   }
@@ -144,12 +166,14 @@ double ContactList::neighbour_guarantee(const Box& box) const {
   const Matrix3& cell = cell_since_neighbours_;
   const GrainFrame with_cell = {cell, box.origin() - cell * box.origin()};
   double farthest = 0.0;
-  for (const TrackedGrain& grain : grains_) {
+  for (const int g : layout_.grains()) {
+    const TrackedGrain& grain = grains_[g];
     const GrainFrame carried = with_cell.after(grain.neighbour_frame);
     grain.grid.bounds().widened(bounds_margin_).for_each_corner([&](const Vector3& x) {
       farthest = std::max(farthest, (grain.frame(x) - carried(x)).norm() + grain.stray);
     });
   }
+  farthest = distribution_.ranks->largest(farthest);
   const double stretch = 1.0 - (cell - Matrix3::Identity()).norm();
   return stretch * (reach_between() + neighbour_margin_) - 2.0 * farthest;
 }
@@ -217,9 +241,11 @@ void ContactList::add_moved(ContactPair& pair, const NetworkData& network) {
 
 void ContactList::add_moved_inside(ContactPair& pair, const NetworkData& network) const {
   thread_local std::vector<std::int32_t> nodes;
-  for (const std::int32_t i : grains_[pair.a].moved) {
+  const TrackedGrain& grain = grains_[pair.a];
+  for (std::size_t k = 0; k < grain.moved.size(); ++k) {
+    const std::int32_t i = grain.moved[k];
     nodes.clear();
-    add_nodes_near(grains_[pair.a].grid, place(pair.a, i), reach_inside(), nodes);
+    add_nodes_near(grain.grid, grain.moved_to[k], reach_inside(), nodes);
     for (const std::int32_t j : nodes) {
       if (j != i && !std::binary_search(network.partners_begin(i), network.partners_end(i), j)) {
         pair.candidates.push_back({std::min(i, j), std::max(i, j)});
@@ -233,8 +259,9 @@ void ContactList::add_moved_between(ContactPair& pair) const {
   /// Calls add(node, other node) for the grain's moved nodes and the other grain's nodes near them.
   const auto look_up = [&](int grain, const GrainFrame& frame, int other, const GrainFrame& other_frame,
                            const Bounds& other_bounds, const auto& add) {
-    for (const std::int32_t node : grains_[grain].moved) {
-      const Vector3 x = frame(place(grain, node));
+    for (std::size_t k = 0; k < grains_[grain].moved.size(); ++k) {
+      const std::int32_t node = grains_[grain].moved[k];
+      const Vector3 x = frame(grains_[grain].moved_to[k]);
       if (other_bounds.contains(x)) {
         nodes.clear();
         add_nodes_near(grains_[other].grid, other_frame.inverse()(x), radius_in(other_frame), nodes);
@@ -271,6 +298,13 @@ void ContactList::finish(ContactPair& pair, const NetworkData& network, std::siz
   }
 }
 
+void ContactList::relist(int g) {
+  if (std::any_of(sides_[g].begin(), sides_[g].end(),
+                  [&](const ContactSide& side) { return pairs_[side.pair].changed; })) {
+    grains_[g].listed = nodes_in(g, &ContactPair::candidates);
+  }
+}
+
 /// Nodes of a grain in one of the lists of its pairs, ascending.
 std::vector<std::int32_t> ContactList::nodes_in(int g, std::vector<kernels::NodePair> ContactPair::*list) const {
   thread_local std::vector<std::uint64_t> in_list; // one bit a node
@@ -292,7 +326,10 @@ std::vector<std::int32_t> ContactList::nodes_in(int g, std::vector<kernels::Node
 
 void ContactList::list_near() {
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int g = 0; g < layout_.n_grains(); ++g) {
+  for (const int g : layout_.grains()) {
+    grains_[g].near = nodes_in(g, &ContactPair::near);
+  }
+  for (const int g : ghosts_) {
     grains_[g].near = nodes_in(g, &ContactPair::near);
   }
 }

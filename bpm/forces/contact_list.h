@@ -6,7 +6,10 @@
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/forces/network_data.h"
 #include "bpm/packing/lane_state.h"
+#include "bpm/parallel/distribution.h"
+#include "bpm/parallel/star_forest.h"
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -27,7 +30,10 @@ namespace boba {
 /// Source: docs/decisions/contacts.md.
 class ContactList {
 public:
-  ContactList(const LaneLayout& layout, const kernels::KernelTable& table, double diameter, double skin);
+  /// Grains of other ranks near ours are followed as their owners see them (contact_ghosts.cpp); update is then
+  /// collective.
+  ContactList(const LaneLayout& layout, const kernels::KernelTable& table, double diameter, double skin,
+              const Distribution& distribution = Distribution::alone());
 
   /// Makes sure that no contact of the present state is missing; true when the list changed. `network_of_grain` as
   /// given at the first call.
@@ -37,6 +43,8 @@ public:
   void note_motion(const Matrix3& cell_map, double displacement);
   /// The cell's vectors or the state changed in a way that note_motion was not told of.
   void invalidate() { built_ = false; }
+  /// The same, and the layout holds other grains than before.
+  void layout_changed();
 
   std::vector<ContactPair>& pairs() { return pairs_; }
   const std::vector<ContactPair>& pairs() const { return pairs_; }
@@ -50,6 +58,9 @@ public:
   std::span<const std::int32_t> near(int grain) const { return grains_[grain].near; }
   /// Lists the nodes of the near candidates, once they have been found after an update.
   void list_near();
+
+  /// Grains of other ranks that may touch ours, ascending.
+  const std::vector<int>& ghosts() const { return ghosts_; }
 
   std::int64_t n_candidates() const;
   /// How often the list was brought up to date, a grain's nodes were noted anew, a pair searched, and a single node
@@ -68,6 +79,7 @@ private:
     Matrix3 inverse_moments = Matrix3::Identity(); ///< of sum X (x) X over the nodes as first noted
     double stray = 0.0;                            ///< largest distance of a node from where the frame puts it, d
     std::vector<std::int32_t> moved; ///< nodes with a new place since the pairs were last brought up to date
+    std::vector<Vector3> moved_to;   ///< those places
     int n_moved = 0;                 ///< since all were noted
     bool anew = false;               ///< all were noted since the pairs were last brought up to date
     std::vector<std::int32_t> listed, near;
@@ -101,8 +113,14 @@ private:
   void add_moved_between(ContactPair& pair) const;
   static void finish(ContactPair& pair, const NetworkData& network, std::size_t sorted);
   double guarantee(const ContactPair& pair, const Box& box) const;
+  void relist(int grain);
   std::vector<std::int32_t> nodes_in(int grain, std::vector<kernels::NodePair> ContactPair::*list) const;
   GrainFrame second_frame(const ContactPair& pair, const Box& box) const;
+
+  // contact_ghosts.cpp: grains of other ranks
+  void share_bounds(std::vector<Bounds>& bounds) const;
+  void find_ghosts();
+  void follow_ghosts();
 
   // contact_tracking.cpp: grains
   void track(const LaneState& state);
@@ -126,6 +144,11 @@ private:
   std::vector<TrackedGrain> grains_;
   std::vector<ContactPair> pairs_; ///< sorted by a, b, image
   std::vector<std::vector<ContactSide>> sides_;
+  const Distribution& distribution_;
+  std::vector<int> ghosts_;
+  std::vector<std::uint8_t> fresh_;           ///< per ghost: nothing of it is known yet
+  std::vector<std::uint8_t> wanted_;          ///< per own grain: some rank knows nothing of it yet
+  std::unique_ptr<StarForest> ghost_forest_;  ///< own grains to ghosts
   Counts counts_;
 };
 

@@ -152,6 +152,7 @@ void ContactList::note_all(int g, const LaneState& state) {
   grain.grid = GrainGrid(places, bounds, reach_between() / (1.0 - largest_shortening));
   grain.stray = rounding;
   grain.moved.clear();
+  grain.moved_to.clear();
   grain.n_moved = 0;
   grain.anew = true;
 }
@@ -171,7 +172,8 @@ bool ContactList::note_moved(int g, const LaneState& state) {
     for (int c = 0; c < 3; ++c) {
       place_[at + c * stride] = static_cast<float>(x[c]);
     }
-    grain.grid.insert(node, place(g, node));
+    grain.moved_to.push_back(place(g, node));
+    grain.grid.insert(node, grain.moved_to.back());
   }
   grain.n_moved += static_cast<int>(grain.moved.size());
   return true;

@@ -13,36 +13,49 @@
 
 namespace boba {
 
-ForceField::ForceField(const Packing& packing, const LaneLayout& layout, const Material& material, double skin)
+namespace {
+
+constexpr double no_contact_r2 = 1e300;
+constexpr kernels::ContactSums no_contacts = {{}, no_contact_r2, 0.0, 0};
+
+/// Nodes whose drift and copies for the contact pass share a visit to the cache.
+constexpr int drift_chunk = 32;
+
+} // namespace
+
+ForceField::ForceField(const Packing& packing, const LaneLayout& layout, const Material& material, double skin,
+                       const Distribution& distribution)
     : layout_(layout), material_(material), table_(kernels::best_table()),
-      contact_list_(layout, table_, material.diameter, skin), contact_sums_(layout.n_grains()) {
-  results_.grains.resize(layout.n_grains());
+      contact_list_(layout, table_, material.diameter, skin, distribution), distribution_(distribution) {
   for (const auto& grain_template : packing.templates) {
     networks_.emplace_back(*grain_template);
     has_periodic_template_ = has_periodic_template_ || grain_template->period.has_value();
   }
-  std::int64_t n_nodes = 0;
   for (const Grain& grain : packing.grains) {
     network_of_grain_.push_back(&networks_[grain.template_index]);
-    first_node_.push_back(n_nodes);
-    n_nodes += network_of_grain_.back()->n_nodes();
   }
   if (has_periodic_template_ && layout.precision() == Precision::mixed) {
     throw std::invalid_argument(
         "precision = \"mixed\" does not do networks that are bonded across the cell's boundary; "
         "allowed for them: \"double\"");
   }
-  contact_nodes_ = std::make_unique_for_overwrite<kernels::ContactNode[]>(n_nodes);
+  layout_changed();
 }
 
-namespace {
-
-constexpr double no_contact_r2 = 1e300;
-
-/// Nodes whose drift and copies for the contact pass share a visit to the cache.
-constexpr int drift_chunk = 32;
-
-} // namespace
+void ForceField::layout_changed() {
+  results_.grains.assign(layout_.n_grains(), {});
+  results_.contacts.assign(layout_.n_grains(), no_contacts);
+  std::int64_t n_nodes = 0;
+  first_node_.assign(layout_.n_grains(), 0);
+  for (const int grain : layout_.grains()) {
+    first_node_[grain] = n_nodes;
+    n_nodes += layout_.n_nodes(grain);
+  }
+  contact_nodes_ = std::make_unique_for_overwrite<kernels::ContactNode[]>(n_nodes);
+  halo_.clear();
+  contact_list_.layout_changed();
+  collected_ = false;
+}
 
 kernels::ContactCandidates ForceField::seen_by_kernels(const ContactPair& pair,
                                                        const std::vector<kernels::NodePair>& pairs, const Box& box,
@@ -51,8 +64,8 @@ kernels::ContactCandidates ForceField::seen_by_kernels(const ContactPair& pair,
   const Vector3 shift = box.h() * n, velocity = residual_rate * n;
   return {pairs.data(),
           static_cast<std::int64_t>(pairs.size()),
-          contact_nodes_.get() + first_node_[pair.a],
-          contact_nodes_.get() + first_node_[pair.b],
+          nodes_of_[pair.a],
+          nodes_of_[pair.b],
           {shift[0], shift[1], shift[2]},
           {velocity[0], velocity[1], velocity[2]}};
 }
@@ -84,9 +97,10 @@ void ForceField::contacts_between(ContactPair& pair, const Box& box, const Evalu
 template <class Coordinate, class Real>
 void ForceField::add_contacts(int grain, const kernels::LaneKernels<Coordinate, Real>& lane_kernels, Real* f,
                               bool with_sums) {
-  kernels::ContactSums& sums = contact_sums_[grain];
-  sums = {};
-  sums.smallest_r2 = no_contact_r2;
+  kernels::ContactSums& sums = results_.contacts[grain];
+  if (with_sums) {
+    sums = no_contacts;
+  }
   for (const ContactSide& side : contact_list_.sides(grain)) {
     const ContactPair& pair = contact_list_.pairs()[side.pair];
     lane_kernels.add_touches(pair.touches.data(), static_cast<std::int64_t>(pair.touches.size()), side.sign, f,
@@ -103,9 +117,8 @@ void ForceField::add_contacts(int grain, const kernels::LaneKernels<Coordinate, 
 }
 
 template <class Real>
-double ForceField::walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums) {
+void ForceField::walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums) {
   const Block& block = layout_.blocks()[b];
-  double total = 0.0;
   for (int lane = 0; lane < block.n_lanes; ++lane) {
     const int grain = block.grain[lane];
     if (grain >= 0) {
@@ -114,10 +127,10 @@ double ForceField::walls_on(int b, const LaneState& state, std::size_t wall, Rea
           f[(3 * static_cast<std::int64_t>(node) + c) * block.n_lanes + lane] += static_cast<Real>(force[c]);
         }
       };
-      total += add_wall_forces(walls_[wall], material_, layout_, grain, state, add, with_sums, contact_sums_[grain]);
+      wall_forces_[wall][grain] =
+          add_wall_forces(walls_[wall], material_, layout_, grain, state, add, with_sums, results_.contacts[grain]);
     }
   }
-  return total;
 }
 
 template <class Coordinate, class Real>
@@ -150,7 +163,7 @@ void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>&
     }
   }
   for (std::size_t w = 0; w < walls_.size(); ++w) {
-    wall_forces_[w][b] = walls_on(b, state, w, force.data(), what.virial != Virial::none);
+    walls_on(b, state, w, force.data(), what.virial != Virial::none);
   }
   kernels::BlockArraysOf<Coordinate, Real> arrays = {lanes.x.data() + block.offset,
                                                      lanes.v.data() + block.offset,
@@ -179,7 +192,7 @@ void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>&
       continue;
     }
     GrainSums& grain = results_.grains[block.grain[lane]];
-    const kernels::ContactSums& contact = contact_sums_[block.grain[lane]];
+    const kernels::ContactSums& contact = results_.contacts[block.grain[lane]];
     for (int c = 0; c < 6; ++c) {
       grain.virial[c] = sums.virial[c][lane] + contact.virial[c] + image_sums.virial[c][lane];
       grain.kinetic[c] = sums.kinetic[c][lane];
@@ -194,7 +207,7 @@ void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>&
 void ForceField::collect(int b, const LaneState& state) {
   for (const int grain : layout_.blocks()[b].grain) {
     if (grain >= 0) {
-      collect(grain, contact_list_.listed(grain), state);
+      collect(grain, listed(grain), state);
     }
   }
 }
@@ -230,12 +243,12 @@ kernels::DriftResult ForceField::drift_block(int b, LaneState& state, kernels::D
     for (int lane = 0; lane < block.n_lanes; ++lane) {
       const int grain = block.grain[lane];
       if (grain >= 0) {
-        const std::span<const std::int32_t> near = contact_list_.near(grain);
+        const std::span<const std::int32_t> nodes = near(grain);
         const std::size_t from = collected[lane];
-        while (collected[lane] < near.size() && near[collected[lane]] < end) {
+        while (collected[lane] < nodes.size() && nodes[collected[lane]] < end) {
           ++collected[lane];
         }
-        collect(grain, near.subspan(from, collected[lane] - from), state);
+        collect(grain, nodes.subspan(from, collected[lane] - from), state);
       }
     }
   }
@@ -260,59 +273,143 @@ void ForceField::prepare_contacts(const LaneState& state, const Box& box) {
   if (collected_ && !changed) {
     return;
   }
-  std::vector<ContactPair>& pairs = contact_list_.pairs();
-#pragma omp parallel
-  {
-#pragma omp for schedule(dynamic, 1)
-    for (int b = 0; b < static_cast<int>(layout_.blocks().size()); ++b) {
-      collect(b, state);
-    }
-    if (changed) {
-#pragma omp for schedule(dynamic, 4)
-      for (int p = 0; p < static_cast<int>(pairs.size()); ++p) {
-        find_near(pairs[p], box);
-      }
-    }
+  if (changed) {
+    know_nodes();
+  }
+#pragma omp parallel for schedule(dynamic, 1)
+  for (int b = 0; b < static_cast<int>(layout_.blocks().size()); ++b) {
+    collect(b, state);
   }
   if (changed) {
-    contact_list_.list_near();
+    list_near(box);
+    divide();
   }
+}
+
+/// Says where the nodes of each grain are found, those of other ranks included.
+void ForceField::know_nodes() {
+  if (distribution_.many()) {
+    halo_.rebuild(contact_list_, layout_, distribution_, ContactHalo::Nodes::listed);
+  }
+  nodes_of_.assign(layout_.n_grains(), nullptr);
+  for (const int grain : layout_.grains()) {
+    nodes_of_[grain] = contact_nodes_.get() + first_node_[grain];
+  }
+  for (const int ghost : contact_list_.ghosts()) {
+    nodes_of_[ghost] = halo_.nodes_of(ghost);
+  }
+}
+
+/// Finds the candidates that may touch before the next update; the halo is then of their nodes alone.
+void ForceField::list_near(const Box& box) {
+  if (distribution_.many()) {
+    halo_.begin(contact_nodes_.get());
+    halo_.end();
+  }
+  std::vector<ContactPair>& pairs = contact_list_.pairs();
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int p = 0; p < static_cast<int>(pairs.size()); ++p) {
+    find_near(pairs[p], box);
+  }
+  contact_list_.list_near();
+  if (distribution_.many()) {
+    halo_.rebuild(contact_list_, layout_, distribution_, ContactHalo::Nodes::near);
+  }
+}
+
+/// Sorts pairs and blocks by whether they wait for other ranks.
+void ForceField::divide() {
+  own_part_ = {};
+  shared_part_ = {};
+  const std::vector<ContactPair>& pairs = contact_list_.pairs();
+  const auto is_shared = [&](const ContactPair& pair) { return !layout_.holds(pair.a) || !layout_.holds(pair.b); };
+  for (int p = 0; p < static_cast<int>(pairs.size()); ++p) {
+    (is_shared(pairs[p]) ? shared_part_ : own_part_).pairs.push_back(p);
+  }
+  const auto waits = [&](int grain) {
+    const auto sides = grain >= 0 ? contact_list_.sides(grain) : std::span<const ContactSide>{};
+    return std::any_of(sides.begin(), sides.end(), [&](const ContactSide& side) {
+      return is_shared(pairs[side.pair]) && !pairs[side.pair].near.empty();
+    });
+  };
+  for (int b = 0; b < static_cast<int>(layout_.blocks().size()); ++b) {
+    const std::vector<int>& grains = layout_.blocks()[b].grain;
+    (std::any_of(grains.begin(), grains.end(), waits) ? shared_part_ : own_part_).blocks.push_back(b);
+  }
+}
+
+void ForceField::evaluate_part(const Part& part, LaneState& state, const Box& box, const Evaluation& what) {
+  const double start = omp_get_wtime();
+  double kicked = start;
+#pragma omp parallel
+  {
+#pragma omp for schedule(dynamic, 4)
+    for (const int p : part.pairs) {
+      contacts_between(contact_list_.pairs()[p], box, what);
+    }
+#pragma omp master
+    kicked = omp_get_wtime();
+#pragma omp for schedule(dynamic, 1)
+    for (const int b : part.blocks) {
+      state.visit([&](auto& lanes) { bonds_of(b, state, lanes, box, what); });
+    }
+  }
+  contact_seconds += kicked - start;
+  bond_seconds += omp_get_wtime() - kicked;
 }
 
 void ForceField::evaluate(LaneState& state, const Box& box, const Evaluation& what) {
   const double start = omp_get_wtime();
   prepare_contacts(state, box);
   collected_ = false;
-  const double searched = omp_get_wtime();
-  const bool with_sums = what.virial != Virial::none;
-  const int n_blocks = static_cast<int>(layout_.blocks().size());
-  double kicked = searched;
-  wall_forces_.assign(walls_.size(), std::vector<double>(n_blocks, 0.0));
-#pragma omp parallel
-  {
-#pragma omp for schedule(dynamic, 4)
-    for (int p = 0; p < static_cast<int>(contact_list_.pairs().size()); ++p) {
-      contacts_between(contact_list_.pairs()[p], box, what);
-    }
-#pragma omp master
-    kicked = omp_get_wtime();
-#pragma omp for schedule(dynamic, 1)
-    for (int b = 0; b < n_blocks; ++b) {
-      state.visit([&](auto& lanes) { bonds_of(b, state, lanes, box, what); });
-    }
+  search_seconds += omp_get_wtime() - start;
+  wall_forces_.assign(walls_.size(), std::vector<double>(layout_.n_grains(), 0.0));
+  if (distribution_.many()) {
+    const double asked = omp_get_wtime();
+    halo_.begin(contact_nodes_.get());
+    halo_seconds += omp_get_wtime() - asked;
   }
+  evaluate_part(own_part_, state, box, what);
+  if (distribution_.many()) {
+    const double waited = omp_get_wtime();
+    halo_.end();
+    halo_seconds += omp_get_wtime() - waited;
+    evaluate_part(shared_part_, state, box, what);
+  }
+  sum_walls();
+}
+
+/// Grain by grain: the same sum for any number of threads and ranks.
+void ForceField::sum_walls() {
   for (std::size_t w = 0; w < walls_.size(); ++w) {
+    distribution_.ranks->share_rows(wall_forces_[w], 1, distribution_.ownership);
     walls_[w].force = 0.0;
     for (const double force : wall_forces_[w]) {
       walls_[w].force += force;
     }
   }
-  if (with_sums) {
-    reduce_contacts();
+}
+
+void ForceField::share_sums(Virial virial) {
+  static_assert(sizeof(GrainSums) == 14 * sizeof(double));
+  if (!distribution_.many() || virial == Virial::none) {
+    return;
   }
-  search_seconds += searched - start;
-  contact_seconds += kicked - searched;
-  bond_seconds += omp_get_wtime() - kicked;
+  if (virial == Virial::full) {
+    distribution_.ranks->share_rows({results_.grains.front().virial.data(), 14 * results_.grains.size()}, 14,
+                                    distribution_.ownership);
+    return;
+  }
+  std::vector<double> traces(2 * results_.grains.size());
+  for (const int g : layout_.grains()) {
+    traces[2 * g] = results_.grains[g].virial_trace;
+    traces[2 * g + 1] = results_.grains[g].kinetic_trace;
+  }
+  distribution_.ranks->share_rows(traces, 2, distribution_.ownership);
+  for (std::size_t g = 0; g < results_.grains.size(); ++g) {
+    results_.grains[g].virial_trace = traces[2 * g];
+    results_.grains[g].kinetic_trace = traces[2 * g + 1];
+  }
 }
 
 void ForceField::volumes_only(LaneState& state) const {
@@ -331,17 +428,46 @@ void ForceField::volumes_only(LaneState& state) const {
   });
 }
 
-void ForceField::reduce_contacts() {
-  results_.contacts = {};
+ForceField::Results ForceField::shared_results() const {
+  Results all = results_;
+  constexpr int width = 9;
+  std::vector<double> rows;
+  for (const kernels::ContactSums& sums : all.contacts) {
+    rows.insert(rows.end(), sums.virial, sums.virial + 6);
+    rows.insert(rows.end(), {sums.smallest_r2, sums.potential, static_cast<double>(sums.n_touching)});
+  }
+  distribution_.ranks->share_rows(rows, width, distribution_.ownership);
+  for (std::size_t g = 0; g < all.contacts.size(); ++g) {
+    const double* row = &rows[width * g];
+    std::copy_n(row, 6, all.contacts[g].virial);
+    all.contacts[g].smallest_r2 = row[6];
+    all.contacts[g].potential = row[7];
+    all.contacts[g].n_touching = static_cast<std::int64_t>(row[8]);
+  }
+  distribution_.ranks->share_rows({all.grains.front().virial.data(), 14 * all.grains.size()}, 14,
+                                  distribution_.ownership);
+  return all;
+}
+
+ContactTotals ForceField::contact_totals() const {
+  std::vector<double> energy(layout_.n_grains());
   double smallest_r2 = no_contact_r2;
   std::int64_t sides = 0;
-  for (const kernels::ContactSums& sums : contact_sums_) {
-    smallest_r2 = std::min(smallest_r2, sums.smallest_r2);
-    results_.contacts.energy += sums.potential;
+  for (const int g : layout_.grains()) {
+    const kernels::ContactSums& sums = results_.contacts[g];
+    energy[g] = sums.potential;
     sides += sums.n_touching;
+    smallest_r2 = std::min(smallest_r2, sums.smallest_r2);
   }
-  results_.contacts.n_touching = sides / 2;
-  results_.contacts.largest_overlap = smallest_r2 < no_contact_r2 ? material_.diameter - std::sqrt(smallest_r2) : 0.0;
+  distribution_.ranks->share_rows(energy, 1, distribution_.ownership);
+  smallest_r2 = distribution_.ranks->smallest(smallest_r2);
+  ContactTotals totals;
+  for (const double e : energy) { // grain by grain: the same sum for any number of threads and ranks
+    totals.energy += e;
+  }
+  totals.n_touching = distribution_.ranks->sum(sides) / 2;
+  totals.largest_overlap = smallest_r2 < no_contact_r2 ? material_.diameter - std::sqrt(smallest_r2) : 0.0;
+  return totals;
 }
 
 } // namespace boba

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/forces/contact_halo.h"
 #include "bpm/forces/contact_list.h"
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/forces/network_data.h"
@@ -50,21 +51,32 @@ struct Evaluation {
 /// Every grain sums the forces on its own nodes in an order that does not depend on threads.
 class ForceField {
 public:
-  ForceField(const Packing& packing, const LaneLayout& layout, const Material& material, double skin);
+  /// With several ranks, the layout holds this rank's grains; `drift` alone is not collective.
+  ForceField(const Packing& packing, const LaneLayout& layout, const Material& material, double skin,
+             const Distribution& distribution = Distribution::alone());
+
+  /// The layout holds other grains than before.
+  void layout_changed();
 
   /// Moves all nodes; per block, what the drift saw.
   std::vector<kernels::DriftResult> drift(LaneState& state, kernels::Drift drift);
-  /// Rebuilds the contact list when it must, and evaluates. Returns the sums of every grain (valid where asked for).
+  /// Rebuilds the contact list when it must, and evaluates. The sums of every grain are then known to this rank for its own
+  /// grains (where asked for); `share_sums` tells all ranks.
   void evaluate(LaneState& state, const Box& box, const Evaluation& what);
 
+  /// Gives all ranks the traces of all grains (Virial::trace), or everything (Virial::full). Collective.
+  void share_sums(Virial virial);
   const std::vector<GrainSums>& grain_sums() const { return results_.grains; }
-  const ContactTotals& contact_totals() const { return results_.contacts; }
+  /// Collective.
+  ContactTotals contact_totals() const;
   /// Sums of the last evaluation, and a way to put them back after one that was only a probe.
   struct Results {
     std::vector<GrainSums> grains;
-    ContactTotals contacts;
+    std::vector<kernels::ContactSums> contacts; ///< of each grain's sides
   };
   const Results& results() const { return results_; }
+  /// The same with every grain's, for all ranks. Collective.
+  Results shared_results() const;
   void set_results(Results results) { results_ = std::move(results); }
   /// The node volumes of every block with alpha != 0, computed and dropped: the benchmark's share of the bond pass.
   void volumes_only(LaneState& state) const;
@@ -84,16 +96,18 @@ public:
   const NetworkData& network(int template_index) const { return networks_[template_index]; }
   const kernels::KernelTable& kernel_table() const { return table_; }
   bool has_periodic_template() const { return has_periodic_template_; }
+  const ContactHalo& halo() const { return halo_; }
 
   /// Seconds spent so far.
   double bond_seconds = 0.0, contact_seconds = 0.0, search_seconds = 0.0;
+  double halo_seconds = 0.0; ///< of waiting for other ranks' nodes, and of asking for them
 
 private:
   void prepare_contacts(const LaneState& state, const Box& box);
   void collect(int b, const LaneState& state);
   void collect(int grain, std::span<const std::int32_t> nodes, const LaneState& state);
   kernels::DriftResult drift_block(int b, LaneState& state, kernels::Drift drift);
-  template <class Real> double walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums);
+  template <class Real> void walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums);
   kernels::ContactCandidates seen_by_kernels(const ContactPair& pair, const std::vector<kernels::NodePair>& pairs,
                                              const Box& box, const Matrix3& residual_rate) const;
   /// Finds the candidates that may touch before the next update of the list.
@@ -103,7 +117,16 @@ private:
   void add_contacts(int grain, const kernels::LaneKernels<Coordinate, Real>& lane_kernels, Real* f, bool with_sums);
   template <class Coordinate, class Real>
   void bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>& lanes, const Box& box, const Evaluation& what);
-  void reduce_contacts();
+  /// Part of the pairs and blocks: those that need no other rank, and the rest.
+  struct Part {
+    std::vector<int> pairs, blocks;
+  };
+  void divide();
+  void evaluate_part(const Part& part, LaneState& state, const Box& box, const Evaluation& what);
+  void sum_walls();
+  std::span<const std::int32_t> listed(int grain) const {
+    return distribution_.many() ? halo_.listed(grain) : contact_list_.listed(grain);
+  }
 
   const LaneLayout& layout_;
   Material material_;
@@ -113,11 +136,14 @@ private:
   ContactList contact_list_;
   std::vector<Wall> walls_;
   Results results_;
-  std::vector<kernels::ContactSums> contact_sums_;
+  const Distribution& distribution_;
+  ContactHalo halo_;
+  Part own_part_, shared_part_; ///< without and with grains of other ranks
   std::vector<std::int64_t> first_node_;                  ///< per grain, in contact_nodes_
   std::unique_ptr<kernels::ContactNode[]> contact_nodes_; ///< of all nodes, kept up to date for those that are listed
   bool collected_ = false;                                ///< contact nodes are those of the present positions
-  std::vector<std::vector<double>> wall_forces_;          ///< per wall and block
+  std::vector<kernels::ContactNode*> nodes_of_;           ///< node 0 of each grain that this rank knows
+  std::vector<std::vector<double>> wall_forces_;          ///< per wall and grain
   bool has_periodic_template_ = false;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <utility>
 
 namespace boba {
@@ -11,11 +12,28 @@ int Block::n_grains() const {
   return static_cast<int>(std::count_if(grain.begin(), grain.end(), [](int g) { return g >= 0; }));
 }
 
+namespace {
+
+std::vector<int> all_grains(const Packing& packing) {
+  std::vector<int> grains(packing.grains.size());
+  std::iota(grains.begin(), grains.end(), 0);
+  return grains;
+}
+
+} // namespace
+
 LaneLayout::LaneLayout(const Packing& packing, Precision precision)
-    : precision_(precision), slots_(packing.grains.size()) {
+    : LaneLayout(packing, precision, all_grains(packing)) {}
+
+LaneLayout::LaneLayout(const Packing& packing, Precision precision, std::span<const int> grains_in_order)
+    : precision_(precision), slots_(packing.grains.size()), grains_(grains_in_order.begin(), grains_in_order.end()) {
+  std::sort(grains_.begin(), grains_.end());
+  for (int g = 0; g < packing.n_grains(); ++g) {
+    slots_[g].n_nodes = packing.template_of(g).n_nodes();
+  }
   const int block_lanes = lanes_of_block(precision);
   std::map<std::pair<int, bool>, std::vector<int>> groups;
-  for (int g = 0; g < packing.n_grains(); ++g) {
+  for (const int g : grains_in_order) {
     const Grain& grain = packing.grains[g];
     groups[{grain.template_index, grain.alpha != 0.0}].push_back(g);
   }

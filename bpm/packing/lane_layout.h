@@ -5,6 +5,7 @@
 #include "bpm/packing/packing.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace boba {
@@ -42,11 +43,16 @@ struct Block {
 class LaneLayout {
 public:
   explicit LaneLayout(const Packing& packing, Precision precision = Precision::full);
+  /// Of these grains of the packing alone, which fill blocks in the order given; the others have no lane.
+  LaneLayout(const Packing& packing, Precision precision, std::span<const int> grains);
 
   Precision precision() const { return precision_; }
 
   const std::vector<Block>& blocks() const { return blocks_; }
-  int n_grains() const { return static_cast<int>(slots_.size()); }
+  int n_grains() const { return static_cast<int>(slots_.size()); } ///< of the packing
+  /// Grains that have a lane, ascending: all of them, or those of one rank.
+  const std::vector<int>& grains() const { return grains_; }
+  bool holds(int grain) const { return slots_[grain].block >= 0; }
   std::int64_t size() const { return size_; } ///< numbers in one array, idle lanes included
   std::int64_t first(int grain) const { return slots_[grain].first; }
   int stride(int grain) const { return slots_[grain].stride; }
@@ -62,13 +68,14 @@ public:
 private:
   struct Slot {
     std::int64_t first = 0;
-    int stride = 1, n_nodes = 0, block = 0, lane = 0;
+    int stride = 1, n_nodes = 0, block = -1, lane = 0;
   };
   void add_block(const Packing& packing, const std::vector<int>& grains, int n_lanes);
 
   Precision precision_;
   std::vector<Block> blocks_;
   std::vector<Slot> slots_;
+  std::vector<int> grains_;
   std::int64_t size_ = 0;
 };
 

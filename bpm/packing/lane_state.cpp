@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <type_traits>
 
 namespace boba {
@@ -38,27 +39,11 @@ template <class Array> void set_triple(Array& array, std::int64_t at, std::int64
 
 } // namespace
 
-LaneState::LaneState(const Packing& packing, const LaneLayout& layout)
-    : layout_(layout), origin_(layout.n_grains(), Vector3::Zero()) {
-  visit([&](auto& arrays) {
-    arrays.x.assign(layout.size(), 0);
-    arrays.v.assign(layout.size(), 0);
-    arrays.f.assign(layout.size(), 0);
-  });
-  quantum_ = precision() == Precision::mixed ? quantum_for(packing) : 1.0;
-  for (const Block& block : layout.blocks()) {
-    const GrainTemplate& undeformed = *packing.templates[block.template_index];
-    for (std::int64_t node = 0; node < block.n_nodes; ++node) {
-      for (int lane = 0; lane < block.n_lanes; ++lane) {
-        visit([&](auto& arrays) {
-          set_triple(arrays.x, block.offset + 3 * node * block.n_lanes + lane, block.n_lanes,
-                     undeformed.position[node] / quantum_);
-        });
-      }
-    }
-  }
+LaneState::LaneState(const Packing& packing, const LaneLayout& layout) : layout_(layout) {
+  reset(packing);
+
   const std::vector<std::int64_t> first = packing.first_nodes();
-  for (int g = 0; g < layout.n_grains(); ++g) {
+  for (const int g : layout.grains()) {
     if (precision() == Precision::mixed) {
       for (int node = 0; node < layout.n_nodes(g); ++node) {
         origin_[g] += packing.position[first[g] + node] / layout.n_nodes(g);
@@ -69,6 +54,65 @@ LaneState::LaneState(const Packing& packing, const LaneLayout& layout)
       set_velocity(g, node, packing.velocity[first[g] + node]);
     }
   }
+}
+
+void LaneState::reset(const Packing& packing) {
+  origin_.assign(layout_.n_grains(), Vector3::Zero());
+  visit([&](auto& arrays) {
+    arrays.x.assign(layout_.size(), 0);
+    arrays.v.assign(layout_.size(), 0);
+    arrays.f.assign(layout_.size(), 0);
+  });
+  quantum_ = precision() == Precision::mixed ? quantum_for(packing) : 1.0;
+  for (const Block& block : layout_.blocks()) {
+    const GrainTemplate& undeformed = *packing.templates[block.template_index];
+    for (std::int64_t node = 0; node < block.n_nodes; ++node) {
+      for (int lane = 0; lane < block.n_lanes; ++lane) {
+        visit([&](auto& arrays) {
+          set_triple(arrays.x, block.offset + 3 * node * block.n_lanes + lane, block.n_lanes,
+                     undeformed.position[node] / quantum_);
+        });
+      }
+    }
+  }
+}
+
+std::size_t LaneState::node_bytes() const {
+  return visit([](const auto& arrays) { return 3 * (sizeof(arrays.x[0]) + sizeof(arrays.v[0]) + sizeof(arrays.f[0])); });
+}
+
+void LaneState::pack(int grain, std::byte* bytes) const {
+  visit([&](const auto& arrays) {
+    const auto put = [&](const auto& array, std::int64_t at) {
+      std::memcpy(bytes, &array[at], sizeof(array[at]));
+      bytes += sizeof(array[at]);
+    };
+    for (int node = 0; node < layout_.n_nodes(grain); ++node) {
+      for (int c = 0; c < 3; ++c) {
+        const std::int64_t at = layout_.index(grain, node, c);
+        put(arrays.x, at);
+        put(arrays.v, at);
+        put(arrays.f, at);
+      }
+    }
+  });
+}
+
+void LaneState::unpack(int grain, const std::byte* bytes) {
+  visit([&](auto& arrays) {
+    const auto take_one = [&](auto& array, std::int64_t at) {
+      std::memcpy(&array[at], bytes, sizeof(array[at]));
+      bytes += sizeof(array[at]);
+    };
+    for (int node = 0; node < layout_.n_nodes(grain); ++node) {
+      for (int c = 0; c < 3; ++c) {
+        const std::int64_t at = layout_.index(grain, node, c);
+        take_one(arrays.x, at);
+        take_one(arrays.v, at);
+        take_one(arrays.f, at);
+      }
+    }
+  });
 }
 
 Vector3 LaneState::position(int grain, int node) const {
@@ -110,7 +154,7 @@ double LaneState::recentre() {
   }
   std::int64_t farthest = 0;
 #pragma omp parallel for schedule(dynamic, 1) reduction(max : farthest)
-  for (int g = 0; g < layout_.n_grains(); ++g) {
+  for (const int g : layout_.grains()) {
     const std::int64_t stride = layout_.stride(g), n = layout_.n_nodes(g);
     for (int c = 0; c < 3; ++c) {
       std::int32_t* x = mixed_.x.data() + layout_.index(g, 0, c);

@@ -4,6 +4,7 @@
 #include "bpm/packing/aligned_array.h"
 #include "bpm/packing/lane_layout.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -28,6 +29,14 @@ public:
   /// Copies the packing in; idle lanes get the undeformed template at rest, so that they stay finite and cheap. The
   /// layout must outlive the state.
   LaneState(const Packing& packing, const LaneLayout& layout);
+
+  /// Begins anew with the layout as it is now: all grains undeformed at the origin, at rest.
+  void reset(const Packing& packing);
+  /// Bytes of a node's coordinates, velocity and force as they are stored; the quanta are the packing's, not the rank's.
+  std::size_t node_bytes() const;
+  /// Copies a grain's nodes as they are stored, one after the other. The grain's origin is not among them.
+  void pack(int grain, std::byte* bytes) const;
+  void unpack(int grain, const std::byte* bytes);
 
   Precision precision() const { return layout_.precision(); }
   double quantum() const { return quantum_; }                       ///< d; 1 in full precision

@@ -159,13 +159,10 @@ TEST(LammpsShear, VelocitiesRemapped) {
     stepper.start();
     SavedState saved;
     stepper.save(saved);
-    for (int g = 0; g < stepper.layout().n_grains(); ++g) {
-      for (int node = 0; node < stepper.layout().n_nodes(g); ++node) {
-        const std::int64_t x = stepper.layout().index(g, node, 0), stride = stepper.layout().stride(g);
-        std::vector<double>& numbers = saved.real["x"];
-        const Vector3 position(numbers[x], numbers[x + stride], numbers[x + 2 * stride]);
-        numbers[x] -= tilt_rate * dt * box.image_of(position)[1];
-      }
+    std::vector<double>& numbers = saved.real["position"];
+    for (std::size_t x = 0; x < numbers.size(); x += 3) {
+      const Vector3 position(numbers[x], numbers[x + 1], numbers[x + 2]);
+      numbers[x] -= tilt_rate * dt * box.image_of(position)[1];
     }
     stepper.restore(saved);
     for (int step = 0; step < n; ++step) {

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/forces/contact_halo.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace boba {
+
+void ContactHalo::rebuild(const ContactList& list, const LaneLayout& layout, const Distribution& distribution) {
+  if (ghosts_ != list.ghosts() || first_node_.empty()) {
+    ghosts_ = list.ghosts();
+    first_node_.assign(layout.n_grains(), 0);
+    n_nodes_ = 0;
+    for (const int g : ghosts_) {
+      first_node_[g] = n_nodes_;
+      n_nodes_ += layout.n_nodes(g);
+    }
+    nodes_ = std::make_unique_for_overwrite<kernels::ContactNode[]>(n_nodes_);
+  }
+  const Ownership& ownership = distribution.ownership;
+  std::vector<RootPlace> from;
+  std::vector<int> to;
+  for (const int g : ghosts_) {
+    for (const std::int32_t node : list.listed(g)) {
+      from.push_back({ownership.owner(g), static_cast<int>(ownership.first_node(g)) + node});
+      to.push_back(static_cast<int>(first_node_[g]) + node);
+    }
+  }
+  forest_ = make_star_forest(static_cast<int>(ownership.n_nodes_of(distribution.ranks->rank())), from, to);
+  each_ = forest_->incoming();
+  ++traffic_.rebuilds;
+
+  const std::span<const int> degrees = forest_->degrees();
+  asked_.assign(layout.n_grains(), {});
+  for (const int g : layout.grains()) {
+    const std::span<const int> of_grain = degrees.subspan(ownership.first_node(g), layout.n_nodes(g));
+    for (std::size_t node = 0; node < of_grain.size(); ++node) {
+      if (of_grain[node] > 0) {
+        asked_[g].push_back(static_cast<std::int32_t>(node));
+      }
+    }
+  }
+}
+
+// Both sides search by the same rules but from grids of different age: others may list nodes that we do not.
+void ContactHalo::list_nodes(const ContactList& list, const LaneLayout& layout) {
+  listed_.assign(layout.n_grains(), {});
+  for (const int g : layout.grains()) {
+    const std::span<const std::int32_t> own = list.listed(g);
+    std::set_union(own.begin(), own.end(), asked_[g].begin(), asked_[g].end(), std::back_inserter(listed_[g]));
+  }
+}
+
+void ContactHalo::clear() {
+  const Traffic traffic = traffic_;
+  *this = {};
+  traffic_ = traffic;
+}
+
+void ContactHalo::begin(const kernels::ContactNode* own) {
+  forest_->begin(sizeof(kernels::ContactNode), own, nodes_.get());
+  ++traffic_.exchanges;
+  traffic_.messages += each_.messages;
+  traffic_.bytes += each_.items * static_cast<std::int64_t>(sizeof(kernels::ContactNode));
+}
+
+void ContactHalo::end() {
+  forest_->end();
+}
+
+std::size_t ContactHalo::bytes() const {
+  return static_cast<std::size_t>(n_nodes_) * sizeof(kernels::ContactNode);
+}
+
+} // namespace boba

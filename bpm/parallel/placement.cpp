@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/parallel/placement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace boba {
+
+namespace {
+
+constexpr int bits = 10; // of a coordinate
+
+/// Skilling's transposed form: turns axes into the digits of the place along the curve.
+void to_curve(std::uint32_t (&x)[3]) {
+  for (std::uint32_t q = 1U << (bits - 1); q > 1; q >>= 1) {
+    const std::uint32_t p = q - 1;
+    for (std::uint32_t& value : x) {
+      if ((value & q) != 0) {
+        x[0] ^= p;
+      } else {
+        const std::uint32_t t = (x[0] ^ value) & p;
+        x[0] ^= t;
+        value ^= t;
+      }
+    }
+  }
+  x[1] ^= x[0];
+  x[2] ^= x[1];
+  std::uint32_t t = 0;
+  for (std::uint32_t q = 1U << (bits - 1); q > 1; q >>= 1) {
+    if ((x[2] & q) != 0) {
+      t ^= q - 1;
+    }
+  }
+  for (std::uint32_t& value : x) {
+    value ^= t;
+  }
+}
+
+/// Grains that may share a block, each group in order of their numbers.
+std::map<std::pair<int, bool>, std::vector<int>> groups_of(const Packing& packing) {
+  std::map<std::pair<int, bool>, std::vector<int>> groups;
+  for (int g = 0; g < packing.n_grains(); ++g) {
+    groups[{packing.grains[g].template_index, packing.grains[g].alpha != 0.0}].push_back(g);
+  }
+  return groups;
+}
+
+/// Cuts a row of grains into a piece for each rank; `unit` grains stay together.
+void cut(const std::vector<int>& row, std::size_t unit, const PlacementInput& input, std::vector<int>& owner) {
+  double total = 0.0;
+  for (const int g : row) {
+    total += input.cost[g];
+  }
+  double before = 0.0;
+  for (std::size_t begin = 0; begin < row.size(); begin += unit) {
+    const std::size_t end = std::min(begin + unit, row.size());
+    double here = 0.0;
+    for (std::size_t k = begin; k < end; ++k) {
+      here += input.cost[row[k]];
+    }
+    // The rank whose share the middle of this unit lies in.
+    const double middle = total > 0.0 ? (before + 0.5 * here) / total : 0.0;
+    const int rank = std::clamp(static_cast<int>(middle * input.n_ranks), 0, input.n_ranks - 1);
+    for (std::size_t k = begin; k < end; ++k) {
+      owner[row[k]] = rank;
+    }
+    before += here;
+  }
+}
+
+} // namespace
+
+std::uint32_t hilbert_place(const Vector3& fractional) {
+  std::uint32_t x[3];
+  for (int c = 0; c < 3; ++c) {
+    const double inside = fractional[c] - std::floor(fractional[c]);
+    x[c] = std::min(static_cast<std::uint32_t>(inside * (1 << bits)), (1U << bits) - 1);
+  }
+  to_curve(x);
+  std::uint32_t place = 0;
+  for (int bit = bits - 1; bit >= 0; --bit) {
+    for (const std::uint32_t value : x) {
+      place = place << 1 | (value >> bit & 1U);
+    }
+  }
+  return place;
+}
+
+std::vector<int> along_curve(std::span<const int> grains, std::span<const Vector3> fractional) {
+  std::vector<int> order(grains.begin(), grains.end());
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return hilbert_place(fractional[a]) < hilbert_place(fractional[b]);
+  });
+  return order;
+}
+
+std::vector<int> place_grains(const PlacementInput& input) {
+  std::vector<int> owner(input.packing->n_grains(), 0);
+  for (const auto& [key, members] : groups_of(*input.packing)) {
+    const std::vector<int> row = along_curve(members, input.fractional);
+    const auto lanes = static_cast<std::size_t>(input.block_lanes);
+    const bool enough = row.size() / lanes >= static_cast<std::size_t>(input.n_ranks);
+    cut(row, enough ? lanes : 1, input, owner);
+  }
+  return owner;
+}
+
+double imbalance(const PlacementInput& input, std::span<const int> owner) {
+  std::vector<double> cost(input.n_ranks, 0.0);
+  for (const auto& [key, members] : groups_of(*input.packing)) {
+    std::vector<double> count(input.n_ranks, 0.0), sum(input.n_ranks, 0.0);
+    for (const int g : members) {
+      count[owner[g]] += 1.0;
+      sum[owner[g]] += input.cost[g];
+    }
+    for (int r = 0; r < input.n_ranks; ++r) {
+      if (count[r] > 0.0) {
+        cost[r] += sum[r] / count[r] * input.block_lanes * std::ceil(count[r] / input.block_lanes);
+      }
+    }
+  }
+  const double mean = std::accumulate(cost.begin(), cost.end(), 0.0) / input.n_ranks;
+  return mean > 0.0 ? *std::max_element(cost.begin(), cost.end()) / mean : 1.0;
+}
+
+} // namespace boba

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/parallel/ownership.h"
+
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace boba {
+
+/// An error that all ranks know of: one of them met it, and all of them throw it.
+class RankError : public std::runtime_error {
+public:
+  RankError(int met_by, bool wrong_input, const std::string& what)
+      : std::runtime_error(what), rank(met_by), is_wrong_input(wrong_input) {}
+  int rank;            ///< the first that met it
+  bool is_wrong_input; ///< it was std::invalid_argument
+};
+
+/// The ranks of a run and what they do together. Every function but rank, size and the like is collective: all ranks
+/// call it, in the same order. With one rank there is no MPI, and nothing is done.
+class Ranks {
+public:
+  /// One rank, without MPI.
+  static const Ranks& alone();
+  /// Those of MPI_COMM_WORLD, which must be initialised.
+  static Ranks of_world();
+
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+  bool is_root() const { return rank_ == 0; }
+  bool many() const { return size_ > 1; }
+
+  /// Element by element the largest of all ranks, in place.
+  void largest(std::span<double> values) const;
+  double largest(double value) const {
+    largest({&value, 1});
+    return value;
+  }
+  double smallest(double value) const { return -largest(-value); }
+  bool any(bool value) const { return many() ? largest(value ? 1.0 : 0.0) > 0.0 : value; }
+  std::int64_t sum(std::int64_t value) const;
+
+  /// Rank 0's values for all; sizes are taken over too.
+  void broadcast_bytes(void* values, std::size_t bytes) const;
+  template <class T> void broadcast(T& values) const {
+    if (!many()) {
+      return;
+    }
+    if constexpr (std::is_trivially_copyable_v<T>) {
+      broadcast_bytes(&values, sizeof(T));
+    } else {
+      std::uint64_t n = values.size();
+      broadcast_bytes(&n, sizeof n);
+      values.resize(n);
+      broadcast_bytes(static_cast<void*>(values.data()), n * sizeof(*values.data()));
+    }
+  }
+
+  /// A table of one row a grain, whose owners have filled in theirs: afterwards all ranks have all rows.
+  void share_rows(std::span<double> table, int width, const Ownership& ownership) const;
+
+  /// Calls work() on all ranks. When it throws on any, all throw RankError with the message of the first that did.
+  template <class Work> void together(Work&& work) const {
+    if (!many()) {
+      work();
+      return;
+    }
+    Failure failure;
+    try {
+      work();
+    } catch (const RankError&) {
+      throw; // all ranks are throwing it
+    } catch (const std::invalid_argument& error) {
+      failure = {true, true, error.what()};
+    } catch (const std::exception& error) {
+      failure = {true, false, error.what()};
+    }
+    agree(failure);
+  }
+
+private:
+  struct Failure {
+    bool failed = false, wrong_input = false;
+    std::string message;
+  };
+  Ranks(int rank, int size) : rank_(rank), size_(size) {}
+  void agree(const Failure& failure) const;
+
+  int rank_ = 0, size_ = 1;
+};
+
+} // namespace boba

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs a small packing on the ranks it is started on and writes every bit of the outcome to a file.
+// Usage: parallel_worker CASE FILE [STATE]
+#include "bpm/dynamics/simulation.h"
+#include "bpm/dynamics/stepper.h"
+#include "bpm/parallel/message_passing.h"
+#include "tests/support/small_packings.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <map>
+#include <random>
+#include <string>
+
+namespace boba::test {
+namespace {
+
+const Box tilted({0.3, -1.0, 2.0}, {12.0, 11.0, 13.0}, {5.0, -4.0, 4.5});
+
+/// Twenty grains, three of them without many-body forces, in a cell that some of them reach across twice.
+Packing twenty_grains() {
+  Packing packing = small_packing({.box = Box({0.3, -1.0, 2.0}, {17.0, 16.0, 15.0}, {5.0, -4.0, 4.5}), .n_grains = 20});
+  for (const int g : {2, 7, 11}) {
+    packing.grains[g].alpha = 0.0;
+  }
+  return packing;
+}
+
+class Bits {
+public:
+  void add(const char* name, double value) { text_ += fmt::format("{} {:a}\n", name, value); }
+  void add(const char* name, const Vector3& v) { text_ += fmt::format("{} {:a} {:a} {:a}\n", name, v[0], v[1], v[2]); }
+  void add(const Totals& totals) {
+    for (const double s : totals.stress) {
+      add("stress", s);
+    }
+    add("pressure", totals.pressure);
+    add("kinetic", totals.kinetic_energy);
+    add("elastic", totals.elastic_energy);
+    add("overlap", totals.largest_overlap);
+  }
+  void add(const Snapshot& snapshot) {
+    for (int column = 0; column < 3; ++column) {
+      add("cell", Vector3(snapshot.box.h().col(column)));
+    }
+    for (std::size_t i = 0; i < snapshot.position.size(); ++i) {
+      add("x", snapshot.position[i]);
+      add("v", snapshot.velocity[i]);
+      add("f", snapshot.force[i]);
+    }
+    for (std::size_t g = 0; g < snapshot.grain_centre.size(); ++g) {
+      add("centre", snapshot.grain_centre[g]);
+      for (const double s : snapshot.grain_stress[g]) {
+        add("grain", s);
+      }
+    }
+  }
+  void write(const std::string& file) const {
+    std::FILE* out = std::fopen(file.c_str(), "w");
+    std::fwrite(text_.data(), 1, text_.size(), out);
+    std::fclose(out);
+  }
+
+private:
+  std::string text_;
+};
+
+constexpr Simulation::Parts all_parts = {.velocity = true, .force = true};
+
+/// Notes the sums of every tenth step.
+class Notes : public Observer {
+public:
+  explicit Notes(Bits& bits) : bits_(bits) {}
+  bool wants(const StepForecast& forecast) override { return forecast.step % 10 == 0; }
+  void observe(const Simulation& simulation, const StageProgress&) override {
+    bits_.add(simulation.totals());
+    bits_.add("force", simulation.end_forces()[0]);
+    bits_.add("force", simulation.end_forces()[1]);
+  }
+
+private:
+  Bits& bits_;
+};
+
+struct Case {
+  Packing packing;
+  SimulationOptions options;
+  std::vector<Stage> stages;
+};
+
+Case case_of(const std::string& name, const Ranks& ranks) {
+  Case c{twenty_grains(), {.threads = ranks.size() == 2 ? 2 : 1, .ranks = &ranks}, {}};
+  c.options.rebalance_seconds = 0.01; // often: who owns what must not matter
+  ShearStage shear = {.rate = 2e-2, .strain = 0.8, .barostat = Barostat{.pressure = 0.05, .gain = 0.05}};
+  if (name == "mixed") {
+    c.options.precision = Precision::mixed;
+  } else if (name == "velocities") {
+    shear.remap = Remap::velocities;
+  } else if (name == "compress") {
+    c.stages = {CompressStage{.barostat = {.pressure = 0.2}, .rate = 4e-3, .pressure_tolerance = 0.1, .kinetic_tolerance = 0.5}};
+    return c;
+  } else if (name == "walls" || name == "clamps") {
+    const Box open({-20, -20, -20}, {40, 40, 40}, Vector3::Zero(), {false, false, false});
+    c.packing = small_packing({.box = open, .n_grains = 5, .least_distance = 4.5});
+    for (std::size_t g = 0, node = 0; g < 5; ++g) { // a column of grains that touch
+      const int n = c.packing.template_of(static_cast<int>(g)).n_nodes();
+      Vector3 mean = Vector3::Zero();
+      for (int i = 0; i < n; ++i) {
+        mean += c.packing.position[node + i] / n;
+      }
+      for (int i = 0; i < n; ++i, ++node) {
+        c.packing.position[node] += Vector3(0.3 * static_cast<double>(g), 0, 4.9 * static_cast<double>(g)) - mean;
+      }
+    }
+    const bool walls = name == "walls";
+    c.stages = {PressStage{.ends = walls ? PressStage::Ends::walls : PressStage::Ends::clamps, .velocity = 2e-2, .strain = 0.05}};
+    return c;
+  }
+  c.stages = {shear};
+  return c;
+}
+
+/// A whole run through the engine's public face.
+void run_case(const std::string& name, const Ranks& ranks, Bits& bits) {
+  Case c = case_of(name, ranks);
+  Simulation simulation(std::move(c.packing), {}, c.options);
+  Notes notes(bits);
+  std::vector<Observer*> observers = {&notes};
+  for (std::size_t stage = 0; stage < c.stages.size(); ++stage) {
+    simulation.run(static_cast<int>(stage), c.stages[stage], observers);
+  }
+  bits.add("step", static_cast<double>(simulation.step()));
+  bits.add(simulation.snapshot(all_parts));
+  // Not part of the outcome, but the run must have been what it says it is.
+  if (ranks.many() && simulation.timings().halo_bytes == 0 && name != "clamps" && ranks.is_root()) {
+    throw std::runtime_error("rank 0 has received no node of another");
+  }
+}
+
+/// Every few steps all grains are dealt out anew, at random.
+void run_migrating(const Ranks& ranks, Bits& bits) {
+  Stepper stepper(twenty_grains(), {}, {.ranks = &ranks});
+  stepper.start();
+  std::mt19937 random(5);
+  for (int step = 0; step < 300; ++step) {
+    if (step % 7 == 3 && ranks.many()) {
+      std::vector<int> owner(stepper.packing().n_grains());
+      for (int& rank : owner) {
+        rank = static_cast<int>(random() % ranks.size());
+      }
+      stepper.move_grains(owner);
+    }
+    stepper.advance(step % 10 == 9 ? Virial::full : Virial::trace);
+    stepper.move_cell({.shear = 3e-2, .dilation = 0.05 * (stepper.pressure() - 0.05)});
+  }
+  bits.add("strain", stepper.strain());
+  bits.add(stepper.totals());
+  bits.add(stepper.snapshot(all_parts));
+}
+
+/// A node that flies off: all ranks hear of it.
+void run_blow_up(const Ranks& ranks) {
+  Packing packing = twenty_grains();
+  packing.velocity[packing.first_nodes()[13] + 5] = Vector3(60.0, 0, 0);
+  Simulation simulation(std::move(packing), {}, {.ranks = &ranks});
+  simulation.run(0, HoldStage{.time = 10.0}, {});
+}
+
+int work(int argc, char** argv, const Ranks& ranks) {
+  const std::string name = argv[1];
+  Bits bits;
+  if (name == "migrating") {
+    run_migrating(ranks, bits);
+  } else if (name == "blow_up") {
+    run_blow_up(ranks);
+  } else {
+    run_case(name, ranks, bits);
+  }
+  if (ranks.is_root() && argc > 2) {
+    bits.write(argv[2]);
+  }
+  return 0;
+}
+
+} // namespace
+} // namespace boba::test
+
+int main(int argc, char** argv) {
+  const boba::MessagePassing mpi;
+  try {
+    return boba::test::work(argc, argv, mpi.ranks());
+  } catch (const boba::RankError& error) {
+    if (mpi.ranks().is_root()) {
+      fmt::print(stderr, "rank {}: {}\n", error.rank, error.what());
+    }
+    return 1;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    mpi.abort(1);
+  }
+}
