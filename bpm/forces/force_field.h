@@ -125,7 +125,7 @@ private:
   void evaluate_part(const Part& part, LaneState& state, const Box& box, const Evaluation& what);
   void sum_walls();
   std::span<const std::int32_t> listed(int grain) const {
-    return distribution_.many() ? halo_.listed(grain) : contact_list_.listed(grain);
+    return distribution_.many() && halo_.is_built() ? halo_.listed(grain) : contact_list_.listed(grain);
   }
 
   const LaneLayout& layout_;

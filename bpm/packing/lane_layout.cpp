@@ -20,6 +20,12 @@ std::vector<int> all_grains(const Packing& packing) {
   return grains;
 }
 
+/// One grain alone costs less as scalars than as one of eight lanes; up to eight of sixteen fill half a register. The
+/// width decides how roots are computed, and so the last bits: it must not depend on who else is on a rank.
+int lanes_for(int grains_in_group, int block_lanes) {
+  return grains_in_group == 1 ? 1 : grains_in_group <= 8 ? 8 : block_lanes;
+}
+
 } // namespace
 
 LaneLayout::LaneLayout(const Packing& packing, Precision precision)
@@ -31,18 +37,22 @@ LaneLayout::LaneLayout(const Packing& packing, Precision precision, std::span<co
   for (int g = 0; g < packing.n_grains(); ++g) {
     slots_[g].n_nodes = packing.template_of(g).n_nodes();
   }
-  const int block_lanes = lanes_of_block(precision);
+  const auto group_of = [&](int g) {
+    return std::pair(packing.grains[g].template_index, packing.grains[g].alpha != 0.0);
+  };
+  std::map<std::pair<int, bool>, int> size_of_group; // in the whole packing: every rank must decide alike
+  for (int g = 0; g < packing.n_grains(); ++g) {
+    ++size_of_group[group_of(g)];
+  }
   std::map<std::pair<int, bool>, std::vector<int>> groups;
   for (const int g : grains_in_order) {
-    const Grain& grain = packing.grains[g];
-    groups[{grain.template_index, grain.alpha != 0.0}].push_back(g);
+    groups[group_of(g)].push_back(g);
   }
   for (const auto& [key, members] : groups) {
-    for (std::size_t begin = 0; begin < members.size(); begin += block_lanes) {
-      const std::size_t end = std::min(begin + block_lanes, members.size());
-      const std::vector<int> grains(members.begin() + begin, members.begin() + end);
-      // One grain alone costs less as scalars than as one of eight lanes; up to eight of sixteen fill half a register.
-      add_block(packing, grains, grains.size() == 1 ? 1 : grains.size() <= 8 ? 8 : block_lanes);
+    const int n_lanes = lanes_for(size_of_group.at(key), lanes_of_block(precision));
+    for (std::size_t begin = 0; begin < members.size(); begin += n_lanes) {
+      const std::size_t end = std::min<std::size_t>(begin + n_lanes, members.size());
+      add_block(packing, {members.begin() + begin, members.begin() + end}, n_lanes);
     }
   }
 }

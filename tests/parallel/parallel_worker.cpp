@@ -16,8 +16,6 @@
 namespace boba::test {
 namespace {
 
-const Box tilted({0.3, -1.0, 2.0}, {12.0, 11.0, 13.0}, {5.0, -4.0, 4.5});
-
 /// Twenty grains, three of them without many-body forces, in a cell that some of them reach across twice.
 Packing twenty_grains() {
   Packing packing = small_packing({.box = Box({0.3, -1.0, 2.0}, {17.0, 16.0, 15.0}, {5.0, -4.0, 4.5}), .n_grains = 20});
