@@ -6,7 +6,8 @@
 
 namespace boba {
 
-void ContactHalo::rebuild(const ContactList& list, const LaneLayout& layout, const Distribution& distribution) {
+void ContactHalo::rebuild(const ContactList& list, const LaneLayout& layout, const Distribution& distribution,
+                          Nodes which) {
   if (ghosts_ != list.ghosts() || first_node_.empty()) {
     ghosts_ = list.ghosts();
     first_node_.assign(layout.n_grains(), 0);
@@ -17,11 +18,12 @@ void ContactHalo::rebuild(const ContactList& list, const LaneLayout& layout, con
     }
     nodes_ = std::make_unique_for_overwrite<kernels::ContactNode[]>(n_nodes_);
   }
+  const auto nodes_here = [&](int g) { return which == Nodes::listed ? list.listed(g) : list.near(g); };
   const Ownership& ownership = distribution.ownership;
   std::vector<RootPlace> from;
   std::vector<int> to;
   for (const int g : ghosts_) {
-    for (const std::int32_t node : list.listed(g)) {
+    for (const std::int32_t node : nodes_here(g)) {
       from.push_back({ownership.owner(g), static_cast<int>(ownership.first_node(g)) + node});
       to.push_back(static_cast<int>(first_node_[g]) + node);
     }
@@ -30,24 +32,21 @@ void ContactHalo::rebuild(const ContactList& list, const LaneLayout& layout, con
   each_ = forest_->incoming();
   ++traffic_.rebuilds;
 
+  // Both sides search by the same rules but from grids of different age: others may list nodes that we do not.
   const std::span<const int> degrees = forest_->degrees();
-  asked_.assign(layout.n_grains(), {});
+  std::vector<std::vector<std::int32_t>>& nodes = which == Nodes::listed ? listed_ : near_;
+  nodes.assign(layout.n_grains(), {});
+  std::vector<std::int32_t> asked;
   for (const int g : layout.grains()) {
+    asked.clear();
     const std::span<const int> of_grain = degrees.subspan(ownership.first_node(g), layout.n_nodes(g));
     for (std::size_t node = 0; node < of_grain.size(); ++node) {
       if (of_grain[node] > 0) {
-        asked_[g].push_back(static_cast<std::int32_t>(node));
+        asked.push_back(static_cast<std::int32_t>(node));
       }
     }
-  }
-}
-
-// Both sides search by the same rules but from grids of different age: others may list nodes that we do not.
-void ContactHalo::list_nodes(const ContactList& list, const LaneLayout& layout) {
-  listed_.assign(layout.n_grains(), {});
-  for (const int g : layout.grains()) {
-    const std::span<const std::int32_t> own = list.listed(g);
-    std::set_union(own.begin(), own.end(), asked_[g].begin(), asked_[g].end(), std::back_inserter(listed_[g]));
+    const std::span<const std::int32_t> own = nodes_here(g);
+    std::set_union(own.begin(), own.end(), asked.begin(), asked.end(), std::back_inserter(nodes[g]));
   }
 }
 

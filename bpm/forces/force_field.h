@@ -121,11 +121,17 @@ private:
   struct Part {
     std::vector<int> pairs, blocks;
   };
+  void know_nodes();
+  void list_near(const Box& box);
   void divide();
   void evaluate_part(const Part& part, LaneState& state, const Box& box, const Evaluation& what);
   void sum_walls();
+  // With several ranks, what others ask for is looked after too.
   std::span<const std::int32_t> listed(int grain) const {
     return distribution_.many() && halo_.is_built() ? halo_.listed(grain) : contact_list_.listed(grain);
+  }
+  std::span<const std::int32_t> near(int grain) const {
+    return distribution_.many() && halo_.is_built() ? halo_.near(grain) : contact_list_.near(grain);
   }
 
   const LaneLayout& layout_;
