@@ -66,7 +66,6 @@ RunSetup prepare(const RunArguments& a, const Ranks& ranks) {
     };
     setup.packing = make_start(setup.scene, table, narrate);
     setup.modulus = effective_modulus(setup.packing, setup.scene.material, table);
-    setup.stages = resolve_pressures(setup.scene, setup.modulus);
     const bool automatic = setup.scene.automatic_dt;
     check_time_step(setup.scene, settle_time_step(setup.scene, setup.packing));
     if (automatic) {

@@ -8,29 +8,39 @@
 namespace boba::test {
 namespace {
 
-class OnRanks : public ::testing::TestWithParam<const char*> {};
+struct OnRanksCase {
+  const char* name;
+  std::vector<int> ranks;
+};
+
+class OnRanks : public ::testing::TestWithParam<OnRanksCase> {};
 
 TEST_P(OnRanks, TheSameBits) {
   const TemporaryFolder folder;
   std::string alone;
-  for (const int ranks : {1, 2, 3, 4, 7}) {
+  std::vector<int> all = {1};
+  all.insert(all.end(), GetParam().ranks.begin(), GetParam().ranks.end());
+  for (const int ranks : all) {
     const std::filesystem::path file = folder / std::to_string(ranks);
     const ProgramResult result =
-        run_on_ranks(ranks, (folder / "").string(), {BOBA_PARALLEL_WORKER, GetParam(), file.string()});
+        run_on_ranks(ranks, (folder / "").string(), {BOBA_PARALLEL_WORKER, GetParam().name, file.string()});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const std::string bits = content_of(file);
     ASSERT_GT(bits.size(), 1000U);
     if (ranks == 1) {
       alone = bits;
     } else {
-      ASSERT_TRUE(bits == alone) << GetParam() << " differs on " << ranks << " ranks";
+      ASSERT_TRUE(bits == alone) << GetParam().name << " differs on " << ranks << " ranks";
     }
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, OnRanks,
-                         ::testing::Values("shear", "mixed", "velocities", "compress", "walls", "clamps", "migrating"),
-                         [](const auto& parameter) { return std::string(parameter.param); });
+                         ::testing::Values(OnRanksCase{"shear", {2, 3, 4, 7}}, OnRanksCase{"mixed", {2, 7}},
+                                           OnRanksCase{"velocities", {3}}, OnRanksCase{"compress", {2}},
+                                           OnRanksCase{"walls", {3}}, OnRanksCase{"clamps", {2}},
+                                           OnRanksCase{"migrating", {2, 3, 4, 7}}),
+                         [](const auto& parameter) { return std::string(parameter.param.name); });
 
 TEST(FailingRank, EndsAllWithOneMessage) {
   const TemporaryFolder folder;
