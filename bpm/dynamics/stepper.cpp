@@ -136,10 +136,6 @@ void Stepper::drift() {
   drift.dither_seed = static_cast<std::uint64_t>(step_ + 1) << 32; // the kernel adds the node's number
   state_.map_origins(position_map_, shift);
   const std::vector<kernels::DriftResult> results = forces_.drift(state_, drift);
-  half_step_speed2_.clear();
-  for (const kernels::DriftResult& result : results) {
-    half_step_speed2_.push_back(result.checksum);
-  }
   const double drifted = omp_get_wtime();
   integration_seconds_ += drifted - begin;
   const double speed = agreement_.exchange(largest_speed(results));
@@ -175,14 +171,16 @@ void Stepper::check_alternation() const {
   if (!clamps_.empty() || residual_rate_ != Matrix3::Zero()) {
     return; // part of the velocities is then not the nodes' own
   }
-  for (std::size_t b = 0; b < half_step_speed2_.size(); ++b) {
-    const Block& block = layout_.blocks()[b];
-    double full_step = 0.0;
+  for (const Block& block : layout_.blocks()) {
+    double full_step = 0.0, speed2 = 0.0; // idle lanes have no part in it
     for (const int grain : block.grain) {
       full_step += grain >= 0 ? forces_.grain_sums()[grain].kinetic_trace : 0.0;
+      for (int node = 0; grain >= 0 && node < block.n_nodes; ++node) {
+        speed2 += state_.velocity(grain, node).squaredNorm(); // of the half step to come
+      }
     }
-    const double half_step = half_step_speed2_[b] * material_.node_mass;
-    const double moved2 = options_.dt * options_.dt * half_step_speed2_[b] / (block.n_grains() * block.n_nodes);
+    const double half_step = speed2 * material_.node_mass;
+    const double moved2 = options_.dt * options_.dt * speed2 / (block.n_grains() * block.n_nodes);
     if (full_step < least_smoothness * half_step && moved2 > least_motion * least_motion) {
       throw BlowUp(describe_alternation(block, step_, options_.dt, std::sqrt(moved2)));
     }

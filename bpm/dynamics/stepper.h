@@ -147,7 +147,6 @@ private:
   Matrix3 cell_map_ = Matrix3::Identity();     ///< of the whole cell, at the end of the last step
   Matrix3 position_map_ = Matrix3::Identity(); ///< the part of it that acts on positions, not yet applied
   Matrix3 residual_rate_ = Matrix3::Zero();    ///< the rest, as a rate of the cell matrix
-  std::vector<double> half_step_speed2_; ///< per block: sum of v^2 at the last drift
   double evaluated_volume_ = 1.0;              ///< of the cell that the last forces belong to
   double pressure_ = 0.0, kinetic_energy_ = 0.0;
   double integration_seconds_ = 0.0;

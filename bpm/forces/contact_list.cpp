@@ -34,7 +34,11 @@ ContactList::ContactList(const LaneLayout& layout, const kernels::KernelTable& t
       throw std::invalid_argument("contact list: a grain has more than 2.6e8 nodes, the most that are handled");
     }
   }
-  if (std::ranges::all_of(layout.blocks(), [](const Block& block) { return block.n_nodes == 1; })) {
+  bool only_nodes = true; // all grains of the packing: every rank must decide alike
+  for (int g = 0; g < layout.n_grains(); ++g) {
+    only_nodes = only_nodes && layout.n_nodes(g) == 1;
+  }
+  if (only_nodes) {
     bounds_margin_ = bounds_margin_of_nodes;
     neighbour_margin_ = neighbour_margin_of_nodes;
   }
