@@ -79,7 +79,7 @@ TEST(ProgramOnRanks, TellsWrongInputOnce) {
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_EQ(count_of(wrong.err, "boba: "), 1) << wrong.err;
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
-  const ProgramResult unknown = boba_on(3, folder, {"run", "--no-such-option"});
+  const ProgramResult unknown = boba_on(3, folder, {"run", "scene.toml", "--no-such-option"});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_EQ(count_of(unknown.err, "--no-such-option"), 1) << unknown.err;
 }
@@ -92,11 +92,12 @@ TEST(ProgramOnRanks, SurvivesAKilledRank) {
   ASSERT_EQ(boba_on(1, folder, run_into("alone", often)).exit_code, 0);
   std::vector<std::string> arguments = run_into("out", often);
   arguments.insert(arguments.begin(), BOBA_PROGRAM);
-  // Rank 1 ends itself once the third checkpoint is there.
+  // Rank 1 is killed once some checkpoints are there.
   std::vector<std::string> command{
       "/bin/sh", "-c",
-      "[ $OMPI_COMM_WORLD_RANK != 1 ] || { me=$$; (while [ ! -e out/checkpoints/checkpoint-000004.boba ]; do sleep 0.02; "
-      "done; kill -9 $me) & }; exec \"$@\"",
+      "[ $OMPI_COMM_WORLD_RANK != 1 ] || { me=$$; (while kill -0 $me; do for n in 4 5 6 7 8; do "
+      "[ ! -e out/checkpoints/checkpoint-00000$n.boba ] || kill -9 $me; done; sleep 0.01; done) >/dev/null 2>&1 & }; "
+      "exec \"$@\"",
       "sh"};
   command.insert(command.end(), arguments.begin(), arguments.end());
   const ProgramResult killed = run_on_ranks(3, (folder / "").string(), command);
