@@ -5,9 +5,12 @@
 The model. A rank of c cores has at most ceil(g / 8) blocks of its g grains; a block is one core's work:
 
     work     = nodes of the busiest core x time of a node-step
-    halo     = messages x latency + most nodes x 64 bytes / bandwidth            (each step)
+    halo     = messages x latency + nodes x 64 bytes / bandwidth + nodes x what one costs the processors
     sums     = 2 log2(P) latency (Allreduce) + log2(P) latency + 16 bytes x grains / bandwidth (Allgather)
-    updates  = share of steps x (8 collectives x 2 log2(P) latency + places / bandwidth)
+    updates  = share of steps x 8 collectives x 2 log2(P) latency
+
+Nodes: those in candidates, counted, times the share of them that two ranks exchanged a step. What one costs the processors (being
+packed, searched and evaluated on both sides) is what two ranks worked longer than half of one, by node.
 """
 import json
 import math
@@ -31,9 +34,10 @@ def step(model, count, cores_a_rank=1, split=False):
     on_busiest = lanes / cores_a_rank if split else 8 * math.ceil(blocks / cores_a_rank)
     work = on_busiest * model["nodes_a_grain"] * model["seconds_a_node"] * max(1.0, count["imbalance"] * grains / lanes)
     depth = math.log2(max(ranks, 2))
-    halo = count["messages"] * LATENCY + count["most_nodes"] * 64 / BANDWIDTH
+    nodes = count["most_nodes"] * model["exchanged_share"]
+    halo = count["messages"] * LATENCY + nodes * 64 / BANDWIDTH + nodes * model["seconds_a_halo_node"] / cores_a_rank
     sums = 3 * depth * LATENCY + 16 * model["grains"] / BANDWIDTH
-    updates = model["updates_a_step"] * (16 * depth * LATENCY + 3 * halo)
+    updates = model["updates_a_step"] * 16 * depth * LATENCY
     return work, halo, sums, updates
 
 
