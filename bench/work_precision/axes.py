@@ -53,7 +53,7 @@ class Plan:
         self.mixed_steps = pick((0.05, 0.1, 0.16), (0.1,))
         self.skins = pick((0.1, 0.2, 0.3, 0.5, 0.8), (0.3, 0.5))
         self.rates = pick((1.024e-3, 2.56e-4, 6.4e-5, 1.6e-5), (1.024e-3, 2.56e-4))
-        self.mixed_rates = pick((1.024e-3, 2.56e-4, 6.4e-5), (1.024e-3,))
+        self.mixed_rates = pick((1.024e-3, 2.56e-4, 6.4e-5, 1.6e-5), (1.024e-3,))
         self.rate_strain = pick(0.1, 0.02)
         self.long_strain = pick(2.0, 0.1)
         self.points = pick((1000, 10_000, 100_000, 1_000_000), (1000, 10_000))
