@@ -78,40 +78,43 @@ void LaneState::reset(const Packing& packing) {
 }
 
 std::size_t LaneState::node_bytes() const {
-  return visit([](const auto& arrays) { return 3 * (sizeof(arrays.x[0]) + sizeof(arrays.v[0]) + sizeof(arrays.f[0])); });
+  return visit(
+      [](const auto& arrays) { return 3 * (sizeof(arrays.x[0]) + sizeof(arrays.v[0]) + sizeof(arrays.f[0])); });
 }
+
+namespace {
+
+/// Calls visit(number) for position, velocity and force of every node of a grain, in the order in which they are
+/// packed.
+template <class Arrays, class Visit>
+void for_each_number(const LaneLayout& layout, int grain, Arrays& arrays, Visit&& visit) {
+  for (int node = 0; node < layout.n_nodes(grain); ++node) {
+    for (int c = 0; c < 3; ++c) {
+      const std::int64_t at = layout.index(grain, node, c);
+      visit(arrays.x[at]);
+      visit(arrays.v[at]);
+      visit(arrays.f[at]);
+    }
+  }
+}
+
+} // namespace
 
 void LaneState::pack(int grain, std::byte* bytes) const {
   visit([&](const auto& arrays) {
-    const auto put = [&](const auto& array, std::int64_t at) {
-      std::memcpy(bytes, &array[at], sizeof(array[at]));
-      bytes += sizeof(array[at]);
-    };
-    for (int node = 0; node < layout_.n_nodes(grain); ++node) {
-      for (int c = 0; c < 3; ++c) {
-        const std::int64_t at = layout_.index(grain, node, c);
-        put(arrays.x, at);
-        put(arrays.v, at);
-        put(arrays.f, at);
-      }
-    }
+    for_each_number(layout_, grain, arrays, [&](const auto& number) {
+      std::memcpy(bytes, &number, sizeof(number));
+      bytes += sizeof(number);
+    });
   });
 }
 
 void LaneState::unpack(int grain, const std::byte* bytes) {
   visit([&](auto& arrays) {
-    const auto take_one = [&](auto& array, std::int64_t at) {
-      std::memcpy(&array[at], bytes, sizeof(array[at]));
-      bytes += sizeof(array[at]);
-    };
-    for (int node = 0; node < layout_.n_nodes(grain); ++node) {
-      for (int c = 0; c < 3; ++c) {
-        const std::int64_t at = layout_.index(grain, node, c);
-        take_one(arrays.x, at);
-        take_one(arrays.v, at);
-        take_one(arrays.f, at);
-      }
-    }
+    for_each_number(layout_, grain, arrays, [&](auto& number) {
+      std::memcpy(&number, bytes, sizeof(number));
+      bytes += sizeof(number);
+    });
   });
 }
 
