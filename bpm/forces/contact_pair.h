@@ -8,6 +8,10 @@
 
 namespace boba {
 
+/// Sums over no contacts at all; their smallest distance stays above any other.
+inline constexpr double no_contact_r2 = 1e300;
+inline constexpr kernels::ContactSums no_contacts = {{}, no_contact_r2, 0.0, 0};
+
 /// Two grains that may touch, the second displaced by a lattice vector, or one grain with itself.
 ///
 /// The candidates are all pairs of nodes that were closer than diameter + skin where the frames had them when they were
