@@ -135,30 +135,31 @@ void Stepper::drift() {
 
   drift.dither_seed = static_cast<std::uint64_t>(step_ + 1) << 32; // the kernel adds the node's number
   state_.map_origins(position_map_, shift);
-  const std::vector<kernels::DriftResult> results = forces_.drift(state_, drift);
+  const std::vector<BlockMotion> results = forces_.drift(state_, drift);
   const double drifted = omp_get_wtime();
   integration_seconds_ += drifted - begin;
-  const double speed = agreement_.exchange(largest_speed(results));
+  const Agreement::Speeds speeds = agreement_.exchange(largest_speeds(results));
   reduction_seconds_ += omp_get_wtime() - drifted;
-  if (!(speed <= largest_allowed_speed())) {
+  if (!(speeds.largest <= largest_allowed_speed())) {
     distribution_.ranks->together([&] { check_drift(results); });
   }
-  forces_.contact_list().note_motion(cell_map_, options_.dt * speed);
+  forces_.contact_list().note_motion(cell_map_, options_.dt * speeds.largest, options_.dt * speeds.common);
   cell_map_.setIdentity();
   position_map_.setIdentity();
 }
 
 /// Of this rank's nodes; beyond all limits when one has no finite velocity.
-double Stepper::largest_speed(const std::vector<kernels::DriftResult>& results) const {
-  double speed2 = 0.0;
-  for (const kernels::DriftResult& result : results) {
-    speed2 = std::isfinite(result.checksum) ? std::max(speed2, result.largest_speed2)
-                                            : std::numeric_limits<double>::infinity();
+Agreement::Speeds Stepper::largest_speeds(const std::vector<BlockMotion>& results) const {
+  double largest2 = 0.0, common2 = 0.0;
+  for (const BlockMotion& result : results) {
+    largest2 = std::isfinite(result.checksum) ? std::max(largest2, result.largest_speed2)
+                                              : std::numeric_limits<double>::infinity();
+    common2 = std::max(common2, result.common_speed2);
   }
-  return std::sqrt(speed2);
+  return {std::sqrt(largest2), std::sqrt(common2)};
 }
 
-void Stepper::check_drift(const std::vector<kernels::DriftResult>& results) const {
+void Stepper::check_drift(const std::vector<BlockMotion>& results) const {
   const double limit = largest_allowed_speed();
   for (std::size_t b = 0; b < results.size(); ++b) {
     if (!std::isfinite(results[b].checksum) || results[b].largest_speed2 > limit * limit) {

@@ -123,8 +123,8 @@ private:
   void restore_ends(const SavedState& saved);
   void drift();
   double largest_allowed_speed() const { return 0.5 * material_.diameter / options_.dt; }
-  double largest_speed(const std::vector<kernels::DriftResult>& results) const;
-  void check_drift(const std::vector<kernels::DriftResult>& results) const;
+  Agreement::Speeds largest_speeds(const std::vector<BlockMotion>& results) const;
+  void check_drift(const std::vector<BlockMotion>& results) const;
   void evaluate(Evaluation what);
   void sum_up();
   double virial_pressure_when_scaled(const std::vector<Vector3>& x, double factor);

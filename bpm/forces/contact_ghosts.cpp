@@ -10,14 +10,13 @@ namespace boba {
 
 namespace {
 
-/// What a rank must know of a grain that it does not own. Its owner's records of places: first those that moved, then,
-/// where somebody needs them, all.
+/// What a rank must know of a grain that it does not own. Its owner's records of places: first those of nodes that moved,
+/// then of those that are followed by themselves, then, where somebody needs them, all.
 struct GhostRecord {
   GrainFrame frame;
   Bounds bounds;
   double stray;
-  std::int32_t first_record, n_moved;
-  std::int64_t anew;
+  std::int32_t first_record, n_moved, n_followed, anew;
 };
 
 struct PlaceRecord {
@@ -90,9 +89,13 @@ void ContactList::follow_ghosts() {
     const int g = layout_.grains()[k];
     const TrackedGrain& grain = grains_[g];
     own.push_back({grain.frame, grain.grid.bounds(), grain.stray, static_cast<std::int32_t>(sent.size()),
-                   static_cast<std::int32_t>(grain.moved.size()), grain.anew ? 1 : 0});
+                   static_cast<std::int32_t>(grain.moved.size()), static_cast<std::int32_t>(grain.followed.size()),
+                   grain.anew ? 1 : 0});
     for (std::size_t m = 0; m < grain.moved.size(); ++m) {
       sent.push_back(record_of(grain.moved[m], grain.moved_to[m]));
+    }
+    for (std::size_t m = 0; m < grain.followed.size(); ++m) {
+      sent.push_back(record_of(grain.followed[m], grain.followed_at[m]));
     }
     for (int node = 0; (grain.anew || wanted_[k] != 0) && node < layout_.n_nodes(g); ++node) {
       sent.push_back(record_of(node, place(g, node)));
@@ -105,7 +108,7 @@ void ContactList::follow_ghosts() {
     const GhostRecord& record = ghosts[k];
     const bool all = record.anew != 0 || fresh_[k] != 0;
     const int first = record.first_record + (all ? record.n_moved : 0);
-    const int n = all ? layout_.n_nodes(ghosts_[k]) : record.n_moved;
+    const int n = record.n_followed + (all ? layout_.n_nodes(ghosts_[k]) : record.n_moved);
     for (int i = 0; i < n; ++i) {
       from.push_back({distribution_.ownership.owner(ghosts_[k]), first + i});
     }
@@ -122,7 +125,19 @@ void ContactList::follow_ghosts() {
     TrackedGrain& grain = grains_[ghosts_[k]];
     grain.frame = record.frame;
     grain.stray = record.stray;
-    if (record.anew != 0 || fresh_[k] != 0) {
+    const bool all = record.anew != 0 || fresh_[k] != 0;
+    for (int m = 0; !all && m < record.n_moved; ++m, ++next) {
+      grain.moved.push_back(received[next].node);
+      grain.moved_to.push_back(place_of(received[next]));
+      grain.grid.insert(received[next].node, grain.moved_to.back());
+    }
+    grain.followed.clear();
+    grain.followed_at.clear();
+    for (int m = 0; m < record.n_followed; ++m, ++next) {
+      grain.followed.push_back(received[next].node);
+      grain.followed_at.push_back(place_of(received[next]));
+    }
+    if (all) {
       places.clear();
       Bounds bounds = record.bounds; // of the places as first noted: some may have moved out of them, or in
       for (int node = 0; node < layout_.n_nodes(ghosts_[k]); ++node) {
@@ -131,12 +146,6 @@ void ContactList::follow_ghosts() {
       }
       grain.grid = GrainGrid(places, bounds, reach_between() / (1.0 - largest_shortening));
       grain.anew = true;
-      continue;
-    }
-    for (int m = 0; m < record.n_moved; ++m, ++next) {
-      grain.moved.push_back(received[next].node);
-      grain.moved_to.push_back(place_of(received[next]));
-      grain.grid.insert(received[next].node, grain.moved_to.back());
     }
   }
   std::fill(fresh_.begin(), fresh_.end(), 0);

@@ -27,7 +27,7 @@ Vector3 lattice_vector(const Box& box, const ImageVector& n) {
 ContactList::ContactList(const LaneLayout& layout, const kernels::KernelTable& table, double diameter, double skin,
                          const Distribution& distribution)
     : layout_(layout), table_(table), diameter_(diameter), skin_(skin), skin_between_(between_share * skin),
-      distribution_(distribution) {
+      brisk_motion_(0.1 * reserve()), distribution_(distribution) {
   layout_changed();
   for (const Block& block : layout.blocks()) {
     if (static_cast<std::int64_t>(block.n_nodes) * block.n_lanes > std::numeric_limits<std::int32_t>::max()) {
@@ -55,7 +55,8 @@ void ContactList::layout_changed() {
 
 bool ContactList::update(const LaneState& state, const Box& box, const Networks& network_of_grain) {
   const double stretch = 1.0 - (cell_since_tracking_ - Matrix3::Identity()).norm();
-  if (built_ && stretch * guaranteed_ - 2.0 * crept_ >= diameter_) {
+  if (built_ && stretch * guaranteed_ - 2.0 * crept_ >= diameter_ &&
+      stretch * followed_guaranteed_ - 2.0 * crept_followed_ >= diameter_) {
     return false;
   }
   track(state);
@@ -79,6 +80,7 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
     } else {
       add_moved(pair, *network_of_grain[pair.a]);
     }
+    add_followed(pair, box, *network_of_grain[pair.a]);
     guaranteed = std::min(guaranteed, kept);
   }
   ++counts_.updates;
@@ -97,24 +99,30 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
   for (const int g : layout_.grains()) {
     counts_.grains += grains_[g].anew ? 1 : 0;
     counts_.nodes += static_cast<std::int64_t>(grains_[g].moved.size());
+    counts_.followed += static_cast<std::int64_t>(grains_[g].followed.size());
   }
+  choose_brisk_motion();
   for (TrackedGrain& grain : grains_) {
     grain.anew = false;
     grain.moved.clear();
     grain.moved_to.clear();
   }
-  guaranteed_ = distribution_.ranks->smallest(guaranteed);
+  followed_guaranteed_ = distribution_.ranks->smallest(followed_guarantee());
+  guaranteed_ = std::min(distribution_.ranks->smallest(guaranteed), followed_guaranteed_);
   crept_ = 0.0;
+  crept_followed_ = 0.0;
   cell_since_tracking_ = Matrix3::Identity();
   built_ = true;
   return true;
 }
 
-void ContactList::note_motion(const Matrix3& cell_map, double displacement) {
+void ContactList::note_motion(const Matrix3& cell_map, double farthest, double common) {
   if (built_) {
     cell_since_tracking_ = cell_map * cell_since_tracking_;
     cell_since_neighbours_ = cell_map * cell_since_neighbours_;
-    crept_ = crept_ * (1.0 + (cell_map - Matrix3::Identity()).norm()) + displacement;
+    const double stretch = 1.0 + (cell_map - Matrix3::Identity()).norm();
+    crept_ = crept_ * stretch + common;
+    crept_followed_ = crept_followed_ * stretch + farthest;
   }
 }
 
@@ -231,7 +239,7 @@ void ContactList::search(ContactPair& pair, const Box& box, const NetworkData& n
       pair.zone = of_a;
     }
   }
-  finish(pair, network, 0);
+  sort_out(pair, pair.candidates, 0, network);
 }
 
 void ContactList::add_moved(ContactPair& pair, const NetworkData& network) {
@@ -239,21 +247,25 @@ void ContactList::add_moved(ContactPair& pair, const NetworkData& network) {
   pair.inside() ? add_moved_inside(pair, network) : add_moved_between(pair);
   if (pair.candidates.size() > before) {
     pair.changed = true;
-    finish(pair, network, before);
+    sort_out(pair, pair.candidates, before, network);
   }
 }
 
 void ContactList::add_moved_inside(ContactPair& pair, const NetworkData& network) const {
-  thread_local std::vector<std::int32_t> nodes;
   const TrackedGrain& grain = grains_[pair.a];
   for (std::size_t k = 0; k < grain.moved.size(); ++k) {
-    const std::int32_t i = grain.moved[k];
-    nodes.clear();
-    add_nodes_near(grain.grid, grain.moved_to[k], reach_inside(), nodes);
-    for (const std::int32_t j : nodes) {
-      if (j != i && !std::binary_search(network.partners_begin(i), network.partners_end(i), j)) {
-        pair.candidates.push_back({std::min(i, j), std::max(i, j)});
-      }
+    add_partners_inside(grain, grain.moved[k], grain.moved_to[k], reach_inside(), network, pair.candidates);
+  }
+}
+
+void ContactList::add_partners_inside(const TrackedGrain& grain, std::int32_t i, const Vector3& place, double radius,
+                                      const NetworkData& network, std::vector<kernels::NodePair>& pairs) {
+  thread_local std::vector<std::int32_t> nodes;
+  nodes.clear();
+  add_nodes_near(grain.grid, place, radius, nodes);
+  for (const std::int32_t j : nodes) {
+    if (j != i && !std::binary_search(network.partners_begin(i), network.partners_end(i), j)) {
+      pairs.push_back({std::min(i, j), std::max(i, j)});
     }
   }
 }
@@ -283,9 +295,9 @@ void ContactList::add_moved_between(ContactPair& pair) const {
   });
 }
 
-/// Sorts the candidates from `sorted` on into those before, and strikes out what is bonded or stands twice.
-void ContactList::finish(ContactPair& pair, const NetworkData& network, std::size_t sorted) {
-  std::vector<kernels::NodePair>& list = pair.candidates;
+/// Sorts the list of a pair from `sorted` on into what is before, and strikes out what is bonded or stands twice.
+void ContactList::sort_out(const ContactPair& pair, std::vector<kernels::NodePair>& list, std::size_t sorted,
+                           const NetworkData& network) {
   const auto before = [](const kernels::NodePair& x, const kernels::NodePair& y) {
     const auto key = [](const kernels::NodePair& nodes) {
       return static_cast<std::uint64_t>(nodes.i) << 32 | static_cast<std::uint32_t>(nodes.j);

@@ -22,7 +22,8 @@ namespace boba {
 /// long as the two frames' relative motion where they meet, the strays of both, and what the nodes may have moved since
 /// they were last looked at are less than the skin together. A node that strays far gets a new place and is looked up
 /// once; a pair whose grains have slid past each other is searched anew from the same places; only a grain that has
-/// changed its shape notes all its places anew.
+/// changed its shape notes all its places anew. The few nodes that move much faster than the rest are followed by
+/// themselves: they are looked up from where they are, with a reach of their own.
 ///
 /// Candidates are sorted by nodes, pairs by grains and image: an order that follows from the state alone.
 /// Since candidates that do not touch add nothing, forces are bit for bit the same whether a pair was searched at this
@@ -38,9 +39,14 @@ public:
   /// Makes sure that no contact of the present state is missing; true when the list changed. `network_of_grain` as
   /// given at the first call.
   bool update(const LaneState& state, const Box& box, const std::vector<const NetworkData*>& network_of_grain);
-  /// Tells the list that the cell was mapped by `cell_map` and that no node moved farther than `displacement` beyond
-  /// that.
-  void note_motion(const Matrix3& cell_map, double displacement);
+  /// Tells the list that the cell was mapped by `cell_map` and that beyond that no node moved farther than `farthest`,
+  /// and none that is not followed farther than `common`, d.
+  void note_motion(const Matrix3& cell_map, double farthest, double common);
+  /// What a node may move in a step before the list wants to hear of it, d.
+  double brisk_motion() const { return brisk_motion_; }
+  /// Tells the list of a node that moves farther than that in a step; true when the node is followed, so that it does not
+  /// count for note_motion's `common`. Different grains may be told of by different threads.
+  bool note_brisk(int grain, std::int32_t node);
   /// The cell's vectors or the state changed in a way that note_motion was not told of.
   void invalidate() { built_ = false; }
   /// The same, and the layout holds other grains than before.
@@ -63,10 +69,10 @@ public:
   const std::vector<int>& ghosts() const { return ghosts_; }
 
   std::int64_t n_candidates() const;
-  /// How often the list was brought up to date, a grain's nodes were noted anew, a pair searched, and a single node
-  /// looked up.
+  /// How often the list was brought up to date, a grain's nodes were noted anew, a pair searched, a single node
+  /// looked up, and one that is followed.
   struct Counts {
-    std::int64_t updates = 0, grains = 0, pairs = 0, nodes = 0;
+    std::int64_t updates = 0, grains = 0, pairs = 0, nodes = 0, followed = 0;
   };
   const Counts& counts() const { return counts_; }
   std::size_t bytes() const;
@@ -83,6 +89,11 @@ private:
     int n_moved = 0;                 ///< since all were noted
     bool anew = false;               ///< all were noted since the pairs were last brought up to date
     std::vector<std::int32_t> listed, near;
+    std::vector<std::int32_t> followed; ///< nodes that are followed by themselves, ascending
+    std::vector<int> updates_left;      ///< for which each of them stays so
+    std::vector<Vector3> followed_at;   ///< where they were at the last update, seen in the frame
+    std::vector<std::int32_t> brisk;    ///< nodes that moved far in a step since then, as they came
+    bool too_brisk = false;             ///< they were too many for any to be followed
   };
   using Networks = std::vector<const NetworkData*>;
 
@@ -111,11 +122,23 @@ private:
   void add_moved(ContactPair& pair, const NetworkData& network);
   void add_moved_inside(ContactPair& pair, const NetworkData& network) const;
   void add_moved_between(ContactPair& pair) const;
-  static void finish(ContactPair& pair, const NetworkData& network, std::size_t sorted);
+  /// Adds the unbonded pairs of a node with those of its grain that are near a place where it is seen.
+  static void add_partners_inside(const TrackedGrain& grain, std::int32_t node, const Vector3& place, double radius,
+                                  const NetworkData& network, std::vector<kernels::NodePair>& pairs);
+  static void sort_out(const ContactPair& pair, std::vector<kernels::NodePair>& list, std::size_t sorted,
+                       const NetworkData& network);
   double guarantee(const ContactPair& pair, const Box& box) const;
   void relist(int grain);
   std::vector<std::int32_t> nodes_in(int grain, std::vector<kernels::NodePair> ContactPair::*list) const;
   GrainFrame second_frame(const ContactPair& pair, const Box& box) const;
+
+  // contact_following.cpp: nodes that are followed by themselves
+  void follow(int grain, const LaneState& state);
+  void choose_brisk_motion();
+  void add_followed(ContactPair& pair, const Box& box, const NetworkData& network);
+  void add_followed_inside(ContactPair& pair, const NetworkData& network) const;
+  void add_followed_between(ContactPair& pair, const Box& box) const;
+  double followed_guarantee() const;
 
   // contact_ghosts.cpp: grains of other ranks
   void share_bounds(std::vector<Bounds>& bounds) const;
@@ -137,9 +160,12 @@ private:
   double diameter_, skin_, skin_between_;
   bool built_ = false;
   Matrix3 cell_since_tracking_ = Matrix3::Identity(), cell_since_neighbours_ = Matrix3::Identity();
-  /// All pairs of nodes that are not listed were farther apart when the grains were last tracked, d.
-  double guaranteed_ = 0.0;
-  double crept_ = 0.0;        ///< bound on any node's motion since then beyond the cell's, d
+  /// All pairs of nodes that are not listed were farther apart when the grains were last tracked, d; and those of
+  /// followed nodes.
+  double guaranteed_ = 0.0, followed_guaranteed_ = 0.0;
+  double crept_ = 0.0;          ///< bound on a node's motion since then beyond the cell's, d, but for followed ones
+  double crept_followed_ = 0.0; ///< the same of any node
+  double brisk_motion_;         ///< d a step
   AlignedArray<float> place_; ///< X, lane layout, d
   std::vector<TrackedGrain> grains_;
   std::vector<ContactPair> pairs_; ///< sorted by a, b, image

@@ -20,7 +20,8 @@ struct ContactPair {
   int a = 0, b = 0; ///< a <= b; image > 0 when a grain meets its own image
   ImageVector image;
   std::vector<kernels::NodePair> candidates;
-  std::vector<kernels::NodePair> near; ///< those that may touch before the next update of the list
+  std::vector<kernels::NodePair> followed; ///< those of nodes that are followed by themselves, sorted
+  std::vector<kernels::NodePair> near;     ///< those that may touch before the next update of the list
 
   bool searched = false;
   bool changed = true;         ///< since the grains last listed their nodes

@@ -35,11 +35,13 @@ void ContactList::track(const LaneState& state) {
   for (int b = 0; b < static_cast<int>(layout_.blocks().size()); ++b) {
     if (built_) {
       track_block(b, state);
-      continue;
     }
     for (const int grain : layout_.blocks()[b].grain) {
       if (grain >= 0) {
-        note_all(grain, state);
+        if (!built_) {
+          note_all(grain, state);
+        }
+        follow(grain, state);
       }
     }
   }

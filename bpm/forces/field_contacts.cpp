@@ -5,6 +5,7 @@
 #include "bpm/forces/lane_kernels.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace boba {
 
@@ -22,6 +23,13 @@ void ForceField::find_near(ContactPair& pair, const Box& box) {
   pair.near.resize(pair.candidates.size() + 1);
   pair.near.resize(table_.near_candidates(seen_by_kernels(pair, pair.candidates, box, Matrix3::Zero()), safe * safe,
                                           pair.near.data()));
+  if (!std::includes(pair.near.begin(), pair.near.end(), pair.followed.begin(), pair.followed.end())) {
+    thread_local std::vector<kernels::NodePair> all;
+    all.clear();
+    std::set_union(pair.near.begin(), pair.near.end(), pair.followed.begin(), pair.followed.end(),
+                   std::back_inserter(all));
+    pair.near.assign(all.begin(), all.end());
+  }
 }
 
 void ForceField::contacts_between(ContactPair& pair, const Box& box, const Evaluation& what) {

@@ -164,7 +164,30 @@ void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>&
   }
 }
 
-kernels::DriftResult ForceField::drift_block(int b, LaneState& state, kernels::Drift drift) {
+/// Tells the contact list of nodes that move far; returns the largest speed^2 of those that it does not follow.
+double ForceField::note_brisk(const Block& block, std::span<const std::int32_t> nodes, const LaneState& state,
+                              const kernels::Drift& drift) {
+  double largest2 = 0.0;
+  for (const std::int32_t node : nodes) {
+    for (int lane = 0; lane < block.n_lanes; ++lane) {
+      const int grain = block.grain[lane];
+      if (grain < 0) {
+        continue;
+      }
+      Vector3 u = state.velocity(grain, node);
+      if (drift.residual[0] != 0.0 || drift.residual[1] != 0.0 || drift.residual[2] != 0.0) {
+        u[0] -= Vector3(drift.residual[0], drift.residual[1], drift.residual[2]).dot(state.position(grain, node)) +
+                drift.residual_shift;
+      }
+      if (const double speed2 = u.squaredNorm(); speed2 > drift.brisk_speed2 && !contact_list_.note_brisk(grain, node)) {
+        largest2 = std::max(largest2, speed2);
+      }
+    }
+  }
+  return largest2;
+}
+
+BlockMotion ForceField::drift_block(int b, LaneState& state, kernels::Drift drift) {
   const Block& block = layout_.blocks()[b];
   const Vector3 residual(drift.residual[0], drift.residual[1], drift.residual[2]);
   for (int lane = 0; lane < block.n_lanes; ++lane) {
@@ -172,7 +195,10 @@ kernels::DriftResult ForceField::drift_block(int b, LaneState& state, kernels::D
         drift.residual_shift + (block.grain[lane] >= 0 ? residual.dot(state.origin(block.grain[lane])) : 0.0);
   }
   std::array<std::size_t, max_lanes> collected{};
-  kernels::DriftResult result{};
+  std::array<std::int32_t, static_cast<std::size_t>(drift_chunk) * max_lanes> brisk;
+  drift.brisk = brisk.data();
+  drift.brisk_speed2 = std::pow(contact_list_.brisk_motion() / drift.dt, 2);
+  BlockMotion motion;
   for (int node = 0; node < block.n_nodes; node += drift_chunk) {
     const int end = std::min(node + drift_chunk, block.n_nodes);
     const std::int64_t first = block.offset + 3 * static_cast<std::int64_t>(node) * block.n_lanes;
@@ -181,8 +207,14 @@ kernels::DriftResult ForceField::drift_block(int b, LaneState& state, kernels::D
       return kernels_of(table_, lanes)
           .drift(lanes.x.data() + first, lanes.v.data() + first, end - node, block.n_lanes, drift);
     });
-    result.largest_speed2 = std::max(result.largest_speed2, part.largest_speed2);
-    result.checksum += part.checksum;
+    motion.largest_speed2 = std::max(motion.largest_speed2, part.largest_speed2);
+    motion.common_speed2 = std::max(motion.common_speed2, std::min(part.largest_speed2, drift.brisk_speed2));
+    motion.checksum += part.checksum;
+    for (std::int32_t& found : std::span(brisk).first(part.n_brisk)) {
+      found += node;
+    }
+    motion.common_speed2 =
+        std::max(motion.common_speed2, note_brisk(block, std::span(brisk).first(part.n_brisk), state, drift));
     for (int lane = 0; lane < block.n_lanes; ++lane) {
       const int grain = block.grain[lane];
       if (grain >= 0) {
@@ -195,13 +227,13 @@ kernels::DriftResult ForceField::drift_block(int b, LaneState& state, kernels::D
       }
     }
   }
-  return result;
+  return motion;
 }
 
-std::vector<kernels::DriftResult> ForceField::drift(LaneState& state, kernels::Drift drift) {
+std::vector<BlockMotion> ForceField::drift(LaneState& state, kernels::Drift drift) {
   drift.quantum = state.quantum();
   const int n_blocks = static_cast<int>(layout_.blocks().size());
-  std::vector<kernels::DriftResult> results(n_blocks);
+  std::vector<BlockMotion> results(n_blocks);
 #pragma omp parallel for schedule(dynamic, 1)
   for (int b = 0; b < n_blocks; ++b) {
     results[b] = drift_block(b, state, drift);

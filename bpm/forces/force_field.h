@@ -35,6 +35,13 @@ struct ContactTotals {
   std::int64_t n_touching = 0;  ///< pairs
 };
 
+/// What the drift of a block saw: enough to know how long a contact list stays valid and whether the run has blown up.
+struct BlockMotion {
+  double largest_speed2 = 0.0; ///< of u (kernels::Drift), d^2/tau^2
+  double common_speed2 = 0.0;  ///< bound on the same but for nodes that the contact list follows by themselves
+  double checksum = 0.0;       ///< a sum of all v^2: not finite when any velocity is not
+};
+
 /// How an evaluation treats velocities and how much it sums up.
 struct Evaluation {
   double kick = 0.0;      ///< v += kick f / m when a node's force is complete, tau
@@ -59,7 +66,7 @@ public:
   void layout_changed();
 
   /// Moves all nodes; per block, what the drift saw.
-  std::vector<kernels::DriftResult> drift(LaneState& state, kernels::Drift drift);
+  std::vector<BlockMotion> drift(LaneState& state, kernels::Drift drift);
   /// Rebuilds the contact list when it must, and evaluates. The sums of every grain are then known to this rank for its own
   /// grains (where asked for); `share_sums` tells all ranks.
   void evaluate(LaneState& state, const Box& box, const Evaluation& what);
@@ -106,7 +113,9 @@ private:
   void prepare_contacts(const LaneState& state, const Box& box);
   void collect(int b, const LaneState& state);
   void collect(int grain, std::span<const std::int32_t> nodes, const LaneState& state);
-  kernels::DriftResult drift_block(int b, LaneState& state, kernels::Drift drift);
+  BlockMotion drift_block(int b, LaneState& state, kernels::Drift drift);
+  double note_brisk(const Block& block, std::span<const std::int32_t> nodes, const LaneState& state,
+                    const kernels::Drift& drift);
   template <class Real> void walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums);
   kernels::ContactCandidates seen_by_kernels(const ContactPair& pair, const std::vector<kernels::NodePair>& pairs,
                                              const Box& box, const Matrix3& residual_rate) const;

@@ -51,18 +51,6 @@ template <class Coordinate> void fit_frames(const FrameArraysOf<Coordinate>& arr
                         [&](int lane, auto storage) { fit_lanes<decltype(storage)>(arrays, lane, fit); });
 }
 
-template <class V> inline bool any_above(V r2, V limit) {
-  if constexpr (lanes_of<V> == 1) {
-    return !(r2 <= limit);
-  } else {
-    const auto below = r2 <= limit;
-    bool all = true;
-    for (int l = 0; l < lanes_of<V>; ++l) {
-      all &= below[l] != 0;
-    }
-    return !all;
-  }
-}
 template <class V> inline auto lane_of(V v, int l) {
   if constexpr (lanes_of<V> == 1) {
     return v;

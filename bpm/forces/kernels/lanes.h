@@ -236,6 +236,27 @@ template <class V> inline bool any_outside(V x, double low, double high) {
   return outside;
 }
 
+/// True also where x is not a number.
+template <class V> inline bool any_above(V x, V limit) {
+  if constexpr (lanes_of<V> == 1) {
+    return !(x <= limit);
+  } else {
+#if defined(__AVX512F__)
+    if constexpr (std::is_same_v<V, Wide>) {
+      return _mm512_cmp_pd_mask((__m512d)x, (__m512d)limit, _CMP_NLE_UQ) != 0;
+    }
+    if constexpr (std::is_same_v<V, WideSingle>) {
+      return _mm512_cmp_ps_mask((__m512)x, (__m512)limit, _CMP_NLE_UQ) != 0;
+    }
+#endif
+    bool all_below = true;
+    for (int l = 0; l < lanes_of<V>; ++l) {
+      all_below &= x[l] <= limit[l];
+    }
+    return !all_below;
+  }
+}
+
 /// x^(-1/3) to 3.3e-4 over [1/2, 2]: the polynomial of degree 5 with the least relative error.
 template <class V> inline V near_inverse_cube_root(V x) {
   const V t = x - static_cast<Element<V>>(1.0);

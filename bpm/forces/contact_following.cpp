@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nodes that a contact list follows by themselves. One node in a thousand, loosely bonded at a surface, moves several
+// times farther in a step than the rest. Were it to count as all do, the list would have to be brought up to date several
+// times as often: these nodes are looked up from where they are, with all of the reach, and have a bound of their own.
+#include "bpm/forces/contact_list.h"
+
+#include <algorithm>
+
+namespace boba {
+
+namespace {
+
+/// Share of a grain's nodes above which none of it is followed: then they all move far.
+constexpr double largest_followed_share = 0.02;
+/// Updates of the list for which a node is followed after it moved far.
+constexpr int updates_followed = 10;
+/// Shares of the nodes between which the number of followed ones is to stay, and what moves it there.
+constexpr double few_followed = 0.002, many_followed = 0.004, adjustment = 1.15;
+/// Steps for which a list can stay at best: to follow more nodes than it takes for that would be in vain.
+constexpr double longest_stay = 40.0;
+/// How often the same nodes are written down before the rest is left out.
+constexpr std::size_t records_per_node = 64;
+
+std::size_t most_followed(int n_nodes) {
+  return static_cast<std::size_t>(largest_followed_share * n_nodes);
+}
+
+} // namespace
+
+bool ContactList::note_brisk(int g, std::int32_t node) {
+  TrackedGrain& grain = grains_[g];
+  if (grain.brisk.size() < records_per_node * (most_followed(layout_.n_nodes(g)) + 1)) {
+    grain.brisk.push_back(node);
+  }
+  return std::binary_search(grain.followed.begin(), grain.followed.end(), node);
+}
+
+/// Chooses the nodes of a grain that are followed until the next update, and finds out where they are.
+void ContactList::follow(int g, const LaneState& state) {
+  TrackedGrain& grain = grains_[g];
+  std::sort(grain.brisk.begin(), grain.brisk.end());
+  grain.brisk.erase(std::unique(grain.brisk.begin(), grain.brisk.end()), grain.brisk.end());
+  std::vector<std::int32_t> nodes = grain.brisk;
+  std::vector<int> left(nodes.size(), updates_followed);
+  for (std::size_t k = 0; k < grain.followed.size(); ++k) {
+    if (grain.updates_left[k] > 1 &&
+        !std::binary_search(grain.brisk.begin(), grain.brisk.end(), grain.followed[k])) {
+      const auto at = std::lower_bound(nodes.begin(), nodes.end(), grain.followed[k]);
+      left.insert(left.begin() + (at - nodes.begin()), grain.updates_left[k] - 1);
+      nodes.insert(at, grain.followed[k]);
+    }
+  }
+  grain.brisk.clear();
+  if (nodes.size() > most_followed(layout_.n_nodes(g))) {
+    grain.too_brisk = true;
+    nodes.clear();
+    left.clear();
+  }
+  grain.followed = std::move(nodes);
+  grain.updates_left = std::move(left);
+  const GrainFrame back = grain.frame.inverse();
+  grain.followed_at.clear();
+  for (const std::int32_t node : grain.followed) {
+    grain.followed_at.push_back(back(state.position(g, node)));
+  }
+}
+
+/// Sets what counts as far so that a few nodes in a thousand are followed.
+void ContactList::choose_brisk_motion() {
+  double followed = 0.0, nodes = 0.0;
+  for (const int g : layout_.grains()) {
+    followed += grains_[g].too_brisk ? layout_.n_nodes(g) : static_cast<double>(grains_[g].followed.size());
+    nodes += layout_.n_nodes(g);
+    grains_[g].too_brisk = false;
+  }
+  if (followed > many_followed * nodes) {
+    brisk_motion_ *= adjustment;
+  } else if (followed < few_followed * nodes) {
+    brisk_motion_ = std::max(brisk_motion_ / adjustment, 0.5 * reserve() / longest_stay);
+  }
+}
+
+/// Distance that followed nodes keep from all that they are not listed with: they were looked up from where they are with
+/// the whole reach, and others may stray from their places.
+double ContactList::followed_guarantee() const {
+  double stray = 0.0;
+  for (const TrackedGrain& grain : grains_) {
+    stray = std::max(stray, grain.stray);
+  }
+  return reach_between() - stray;
+}
+
+void ContactList::add_followed(ContactPair& pair, const Box& box, const NetworkData& network) {
+  pair.followed.clear();
+  pair.inside() ? add_followed_inside(pair, network) : add_followed_between(pair, box);
+  if (pair.followed.empty()) {
+    return;
+  }
+  sort_out(pair, pair.followed, 0, network);
+  if (!std::includes(pair.candidates.begin(), pair.candidates.end(), pair.followed.begin(), pair.followed.end())) {
+    const std::size_t before = pair.candidates.size();
+    pair.candidates.insert(pair.candidates.end(), pair.followed.begin(), pair.followed.end());
+    sort_out(pair, pair.candidates, before, network);
+    pair.changed = true;
+  }
+}
+
+void ContactList::add_followed_inside(ContactPair& pair, const NetworkData& network) const {
+  const TrackedGrain& grain = grains_[pair.a];
+  for (std::size_t k = 0; k < grain.followed.size(); ++k) {
+    add_partners_inside(grain, grain.followed[k], grain.followed_at[k], radius_in(grain.frame), network, pair.followed);
+  }
+}
+
+void ContactList::add_followed_between(ContactPair& pair, const Box& box) const {
+  thread_local std::vector<std::int32_t> nodes;
+  const GrainFrame frame_a = grains_[pair.a].frame, frame_b = second_frame(pair, box);
+  /// Calls add(node, other node) for the followed nodes of one grain and the nodes of the other near them.
+  const auto look_up = [&](int grain, const GrainFrame& frame, int other, const GrainFrame& other_frame,
+                           const auto& add) {
+    if (grains_[grain].followed.empty()) {
+      return;
+    }
+    const GrainFrame to_other = other_frame.inverse().after(frame);
+    const double radius = radius_in(other_frame);
+    const Bounds bounds = grains_[other].grid.bounds().widened(bounds_margin_ + radius);
+    for (std::size_t k = 0; k < grains_[grain].followed.size(); ++k) {
+      const Vector3 x = to_other(grains_[grain].followed_at[k]);
+      if (bounds.contains(x)) {
+        nodes.clear();
+        add_nodes_near(grains_[other].grid, x, radius, nodes);
+        for (const std::int32_t near : nodes) {
+          add(grains_[grain].followed[k], near);
+        }
+      }
+    }
+  };
+  look_up(pair.a, frame_a, pair.b, frame_b, [&](std::int32_t i, std::int32_t j) { pair.followed.push_back({i, j}); });
+  look_up(pair.b, frame_b, pair.a, frame_a, [&](std::int32_t j, std::int32_t i) { pair.followed.push_back({i, j}); });
+}
+
+} // namespace boba
