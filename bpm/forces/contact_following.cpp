@@ -3,6 +3,7 @@
 // times farther in a step than the rest. Were it to count as all do, the list would have to be brought up to date several
 // times as often: these nodes are looked up from where they are, with all of the reach, and have a bound of their own.
 #include "bpm/forces/contact_list.h"
+#include "bpm/forces/node_pairs.h"
 
 #include <algorithm>
 
@@ -96,13 +97,11 @@ void ContactList::add_followed(ContactPair& pair, const Box& box, const NetworkD
   if (pair.followed.empty()) {
     return;
   }
-  sort_out(pair, pair.followed, 0, network);
-  if (!std::includes(pair.candidates.begin(), pair.candidates.end(), pair.followed.begin(), pair.followed.end())) {
-    const std::size_t before = pair.candidates.size();
-    pair.candidates.insert(pair.candidates.end(), pair.followed.begin(), pair.followed.end());
-    sort_out(pair, pair.candidates, before, network);
-    pair.changed = true;
-  }
+  strike_bonded(pair, pair.followed, network);
+  sort_pairs(pair.followed, layout_.n_nodes(pair.a));
+  thread_local NodePairs found;
+  found.assign(pair.followed.begin(), pair.followed.end());
+  add_candidates(pair, found, network);
 }
 
 void ContactList::add_followed_inside(ContactPair& pair, const NetworkData& network) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pairs of grains: which there are, what they list, how long that lasts. Grains are followed in contact_tracking.cpp.
 #include "bpm/forces/contact_list.h"
+#include "bpm/forces/node_pairs.h"
 
 #include <algorithm>
 #include <bit>
@@ -239,27 +240,28 @@ void ContactList::search(ContactPair& pair, const Box& box, const NetworkData& n
       pair.zone = of_a;
     }
   }
-  sort_out(pair, pair.candidates, 0, network);
+  strike_bonded(pair, pair.candidates, network);
+  sort_pairs(pair.candidates, layout_.n_nodes(pair.a));
 }
 
 void ContactList::add_moved(ContactPair& pair, const NetworkData& network) {
-  const std::size_t before = pair.candidates.size();
-  pair.inside() ? add_moved_inside(pair, network) : add_moved_between(pair);
-  if (pair.candidates.size() > before) {
-    pair.changed = true;
-    sort_out(pair, pair.candidates, before, network);
+  thread_local std::vector<kernels::NodePair> found;
+  found.clear();
+  pair.inside() ? add_moved_inside(pair, network, found) : add_moved_between(pair, found);
+  if (!found.empty()) {
+    add_candidates(pair, found, network);
   }
 }
 
-void ContactList::add_moved_inside(ContactPair& pair, const NetworkData& network) const {
+void ContactList::add_moved_inside(const ContactPair& pair, const NetworkData& network, NodePairs& found) const {
   const TrackedGrain& grain = grains_[pair.a];
   for (std::size_t k = 0; k < grain.moved.size(); ++k) {
-    add_partners_inside(grain, grain.moved[k], grain.moved_to[k], reach_inside(), network, pair.candidates);
+    add_partners_inside(grain, grain.moved[k], grain.moved_to[k], reach_inside(), network, found);
   }
 }
 
 void ContactList::add_partners_inside(const TrackedGrain& grain, std::int32_t i, const Vector3& place, double radius,
-                                      const NetworkData& network, std::vector<kernels::NodePair>& pairs) {
+                                      const NetworkData& network, NodePairs& pairs) {
   thread_local std::vector<std::int32_t> nodes;
   nodes.clear();
   add_nodes_near(grain.grid, place, radius, nodes);
@@ -270,7 +272,7 @@ void ContactList::add_partners_inside(const TrackedGrain& grain, std::int32_t i,
   }
 }
 
-void ContactList::add_moved_between(ContactPair& pair) const {
+void ContactList::add_moved_between(const ContactPair& pair, NodePairs& found) const {
   thread_local std::vector<std::int32_t> nodes;
   /// Calls add(node, other node) for the grain's moved nodes and the other grain's nodes near them.
   const auto look_up = [&](int grain, const GrainFrame& frame, int other, const GrainFrame& other_frame,
@@ -288,30 +290,26 @@ void ContactList::add_moved_between(ContactPair& pair) const {
     }
   };
   look_up(pair.a, pair.frame_a, pair.b, pair.frame_b, pair.bounds_b, [&](std::int32_t i, std::int32_t j) {
-    pair.candidates.push_back({i, j});
+    found.push_back({i, j});
   });
   look_up(pair.b, pair.frame_b, pair.a, pair.frame_a, pair.bounds_a, [&](std::int32_t j, std::int32_t i) {
-    pair.candidates.push_back({i, j});
+    found.push_back({i, j});
   });
 }
 
-/// Sorts the list of a pair from `sorted` on into what is before, and strikes out what is bonded or stands twice.
-void ContactList::sort_out(const ContactPair& pair, std::vector<kernels::NodePair>& list, std::size_t sorted,
-                           const NetworkData& network) {
-  const auto before = [](const kernels::NodePair& x, const kernels::NodePair& y) {
-    const auto key = [](const kernels::NodePair& nodes) {
-      return static_cast<std::uint64_t>(nodes.i) << 32 | static_cast<std::uint32_t>(nodes.j);
-    };
-    return key(x) < key(y);
-  };
-  const auto middle = list.begin() + static_cast<std::ptrdiff_t>(sorted);
-  std::sort(middle, list.end(), before);
-  std::inplace_merge(list.begin(), middle, list.end(), before);
-  list.erase(std::unique(list.begin(), list.end()), list.end());
+/// Strikes out pairs that are bonded across the cell's boundary.
+void ContactList::strike_bonded(const ContactPair& pair, NodePairs& list, const NetworkData& network) {
   if (pair.a == pair.b && !pair.inside()) {
     const Eigen::Vector3i n(pair.image.a, pair.image.b, pair.image.c);
     std::erase_if(list, [&](const kernels::NodePair& nodes) { return network.bonded_across(nodes.i, nodes.j, n); });
   }
+}
+
+/// Adds pairs in any order to the candidates; `found` keeps those that are new.
+void ContactList::add_candidates(ContactPair& pair, NodePairs& found, const NetworkData& network) {
+  strike_bonded(pair, found, network);
+  insert_pairs(pair.candidates, found);
+  pair.changed = pair.changed || !found.empty();
 }
 
 void ContactList::relist(int g) {

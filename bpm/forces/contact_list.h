@@ -96,6 +96,7 @@ private:
     bool too_brisk = false;             ///< they were too many for any to be followed
   };
   using Networks = std::vector<const NetworkData*>;
+  using NodePairs = std::vector<kernels::NodePair>;
 
   double reach_between() const { return diameter_ + skin_between_; }
   double reach_inside() const { return diameter_ + skin_; }
@@ -120,13 +121,13 @@ private:
   double radius_in(const GrainFrame& frame) const;
   void search(ContactPair& pair, const Box& box, const NetworkData& network);
   void add_moved(ContactPair& pair, const NetworkData& network);
-  void add_moved_inside(ContactPair& pair, const NetworkData& network) const;
-  void add_moved_between(ContactPair& pair) const;
+  void add_moved_inside(const ContactPair& pair, const NetworkData& network, NodePairs& found) const;
+  void add_moved_between(const ContactPair& pair, NodePairs& found) const;
   /// Adds the unbonded pairs of a node with those of its grain that are near a place where it is seen.
   static void add_partners_inside(const TrackedGrain& grain, std::int32_t node, const Vector3& place, double radius,
-                                  const NetworkData& network, std::vector<kernels::NodePair>& pairs);
-  static void sort_out(const ContactPair& pair, std::vector<kernels::NodePair>& list, std::size_t sorted,
-                       const NetworkData& network);
+                                  const NetworkData& network, NodePairs& pairs);
+  static void strike_bonded(const ContactPair& pair, NodePairs& list, const NetworkData& network);
+  static void add_candidates(ContactPair& pair, NodePairs& found, const NetworkData& network);
   double guarantee(const ContactPair& pair, const Box& box) const;
   void relist(int grain);
   std::vector<std::int32_t> nodes_in(int grain, std::vector<kernels::NodePair> ContactPair::*list) const;
