@@ -76,25 +76,37 @@ template <class Visit> void for_each_row(const GrainGrid& grid, const CellRange&
   }
 }
 
-/// Collects the places of a grid's nodes near a point, row by row.
+/// The places of a grid's nodes near a point, in some of its rows.
 class NearPlaces {
 public:
   NearPlaces(const GrainGrid& grid, double radius)
-      : kernel_(kernels::best_table().near_places), columns_(grid.columns()), radius2_(radius * radius),
-        found_(grid.size() + 8) {}
+      : kernel_(kernels::best_table().near_places), columns_(grid.columns()), radius2_(radius * radius) {}
 
-  void clear() { n_ = 0; }
-  void add_row(std::int32_t begin, std::int32_t end, const Vector3& x) {
-    n_ += kernel_(columns_, begin, end, x.data(), radius2_, found_.data() + n_);
+  void add_row(std::int32_t begin, std::int32_t end) {
+    rows_.push_back({begin, end});
+    n_places_ += end - begin;
   }
-  std::span<const std::int32_t> places() const { return std::span(found_).first(n_); }
+  /// Those in the rows that were added since the last time.
+  std::span<const std::int32_t> find(const Vector3& x) {
+    const auto room = static_cast<std::size_t>(n_places_ + kernels::found_room);
+    if (found_.size() < room) {
+      found_.resize(room);
+    }
+    const std::int32_t n =
+        kernel_(columns_, rows_.data(), static_cast<int>(rows_.size()), x.data(), radius2_, found_.data());
+    rows_.clear();
+    n_places_ = 0;
+    return std::span(found_).first(n);
+  }
 
 private:
   decltype(kernels::KernelTable::near_places) kernel_;
   kernels::SortedNodes columns_;
   double radius2_;
-  std::vector<std::int32_t> found_;
-  std::int32_t n_ = 0;
+  std::int32_t n_places_ = 0;
+  // Scratch of the thread: whoever looks up a single node asks for no memory.
+  inline static thread_local std::vector<kernels::PlaceRange> rows_;
+  inline static thread_local std::vector<std::int32_t> found_;
 };
 
 } // namespace
@@ -110,10 +122,9 @@ void add_pairs_between(const GrainGrid& a, const GrainGrid& b, const GrainFrame&
     if (!a.near(x)) {
       return;
     }
-    near.clear();
     for_each_row(a, cells_around(a, x - margin, x + margin),
-                 [&](std::int32_t first, std::int32_t last) { near.add_row(first, last, x); });
-    for (const std::int32_t i : near.places()) {
+                 [&](std::int32_t first, std::int32_t last) { near.add_row(first, last); });
+    for (const std::int32_t i : near.find(x)) {
       pairs.push_back({a.node(i), j});
     }
     a.visit_inserted(x, radius, [&](std::int32_t i) { pairs.push_back({i, j}); });
@@ -128,19 +139,17 @@ void add_pairs_between(const GrainGrid& a, const GrainGrid& b, const GrainFrame&
 
 namespace {
 
-/// Partners of the node at place `at` of cell (x, y, z) among the half of the surrounding cells that come later: the
-/// rest of its row, and the rows after.
-void find_later(const GrainGrid& grid, std::int32_t at, int x, int y, int z, NearPlaces& near) {
-  const Vector3 position = grid.position(at);
+/// Where the partners of the node at place `at` of cell (x, y, z) are, among the half of the surrounding cells that come
+/// later: the rest of its row, and the rows after.
+void add_later_rows(const GrainGrid& grid, std::int32_t at, int x, int y, int z, NearPlaces& near) {
   const int left = std::max(x - 1, 0), right = std::min(x + 2, grid.cells(0));
-  near.clear();
-  near.add_row(at + 1, grid.begin(right, y, z), position);
+  near.add_row(at + 1, grid.begin(right, y, z));
   if (y + 1 < grid.cells(1)) {
-    near.add_row(grid.begin(left, y + 1, z), grid.begin(right, y + 1, z), position);
+    near.add_row(grid.begin(left, y + 1, z), grid.begin(right, y + 1, z));
   }
   if (z + 1 < grid.cells(2)) {
     for (int row = std::max(y - 1, 0); row < std::min(y + 2, grid.cells(1)); ++row) {
-      near.add_row(grid.begin(left, row, z + 1), grid.begin(right, row, z + 1), position);
+      near.add_row(grid.begin(left, row, z + 1), grid.begin(right, row, z + 1));
     }
   }
 }
@@ -159,8 +168,8 @@ void add_pairs_inside(const GrainGrid& grid, const NetworkData& network, double 
           for (const std::int32_t* j = network.partners_begin(i); j != network.partners_end(i); ++j) {
             bonded_to[*j] = i;
           }
-          find_later(grid, at, x, y, z, near);
-          for (const std::int32_t place : near.places()) {
+          add_later_rows(grid, at, x, y, z, near);
+          for (const std::int32_t place : near.find(grid.position(at))) {
             const std::int32_t j = grid.node(place);
             if (bonded_to[j] != i) {
               pairs.push_back({std::min(i, j), std::max(i, j)});
@@ -177,16 +186,12 @@ void add_nodes_near(const GrainGrid& grid, const Vector3& x, double radius, std:
     return;
   }
   const Vector3 margin = Vector3::Constant(radius);
-  const auto find = kernels::best_table().near_places;
-  for_each_row(grid, cells_around(grid, x - margin, x + margin), [&](std::int32_t begin, std::int32_t end) {
-    const std::size_t before = nodes.size();
-    nodes.resize(before + (end - begin) + 8);
-    const std::int32_t n = find(grid.columns(), begin, end, x.data(), radius * radius, nodes.data() + before);
-    nodes.resize(before + n);
-    for (std::size_t k = before; k < nodes.size(); ++k) {
-      nodes[k] = grid.node(nodes[k]);
-    }
-  });
+  NearPlaces near(grid, radius);
+  for_each_row(grid, cells_around(grid, x - margin, x + margin),
+               [&](std::int32_t begin, std::int32_t end) { near.add_row(begin, end); });
+  for (const std::int32_t place : near.find(x)) {
+    nodes.push_back(grid.node(place));
+  }
   grid.visit_inserted(x, radius, [&](std::int32_t node) { nodes.push_back(node); });
 }
 

@@ -38,9 +38,9 @@ GrainGrid::GrainGrid(std::span<const Vector3> nodes, const Bounds& bounds, doubl
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const std::int32_t place = next[cell[i]]++;
     node_[place] = static_cast<std::int32_t>(i);
-    x_[place] = nodes[i][0];
-    y_[place] = nodes[i][1];
-    z_[place] = nodes[i][2];
+    x_[place] = static_cast<float>(nodes[i][0]);
+    y_[place] = static_cast<float>(nodes[i][1]);
+    z_[place] = static_cast<float>(nodes[i][2]);
   }
 }
 

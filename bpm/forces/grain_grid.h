@@ -14,7 +14,8 @@
 namespace boba {
 
 /// All nodes of one grain in cubic cells of edge `reach` over its bounds, sorted by cell with x running fastest, so
-/// that the cells of a row are one run of nodes. No assumption is made on which nodes are at the surface.
+/// that the cells of a row are one run of nodes. No assumption is made on which nodes are at the surface. Coordinates are
+/// kept as floats.
 class GrainGrid {
 public:
   GrainGrid() = default;
@@ -69,7 +70,7 @@ public:
   Vector3 position(std::int32_t place) const { return {x_[place], y_[place], z_[place]}; }
   kernels::SortedNodes columns() const { return {x_.data(), y_.data(), z_.data()}; }
   std::size_t bytes() const {
-    return (first_.capacity() + node_.capacity()) * sizeof(std::int32_t) + 3 * x_.capacity() * sizeof(double) +
+    return (first_.capacity() + node_.capacity()) * sizeof(std::int32_t) + 3 * x_.capacity() * sizeof(float) +
            near_.capacity() + last_inserted_.capacity() * sizeof(std::int32_t) +
            inserted_.capacity() * sizeof(Inserted);
   }
@@ -94,7 +95,7 @@ private:
   int n_cells_[3] = {0, 0, 0};
   std::vector<std::int32_t> first_;
   std::vector<std::int32_t> node_;
-  std::vector<double> x_, y_, z_;
+  std::vector<float> x_, y_, z_;
   std::vector<std::uint8_t> near_;          ///< over the cells and the rings around them
   std::vector<std::int32_t> last_inserted_; ///< over the same, or empty
   std::vector<Inserted> inserted_;

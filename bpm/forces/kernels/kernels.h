@@ -158,7 +158,12 @@ struct LaneFrames {
 
 /// Nodes of one grain, sorted by cell; columns of coordinates, d.
 struct SortedNodes {
-  const double *x, *y, *z;
+  const float *x, *y, *z;
+};
+
+/// Some of them that stand side by side.
+struct PlaceRange {
+  std::int32_t begin, end;
 };
 
 /// The kernels that walk through lane arrays.
@@ -181,6 +186,8 @@ template <class Coordinate, class Real> struct LaneKernels {
                                   std::int32_t* far);
 };
 
+inline constexpr int found_room = 16;
+
 struct KernelTable {
   const char* name; ///< "avx512", "avx2" or "baseline"
   LaneKernels<double, double> precise;
@@ -192,9 +199,10 @@ struct KernelTable {
   /// room for touch_room(candidates).
   std::int64_t (*contacts)(const ContactCandidates&, const ContactParameters&, ContactNode* rows, Touch* touches,
                            ContactSums&);
-  /// Writes the places in [begin, end) closer than sqrt(reach2) to p into `found`, ascending, and returns their number.
-  /// `found` has room for end - begin + 8 numbers.
-  std::int32_t (*near_places)(const SortedNodes&, std::int32_t begin, std::int32_t end, const double* p, double reach2,
+  /// Writes the places of some ranges closer than sqrt(reach2) to p into `found`, range by range and ascending, and
+  /// returns their number. `found` has room for found_room more numbers than there are places. Coordinates are rounded to
+  /// floats.
+  std::int32_t (*near_places)(const SortedNodes&, const PlaceRange* ranges, int n_ranges, const double* p, double reach2,
                               std::int32_t* found);
 };
 
