@@ -83,7 +83,8 @@ Packing compressed(const PackingSpec& spec) {
   const auto driver = make_stage_driver(CompressStage{.barostat = {.pressure = pressure_of(spec.pressure, spec.alpha)},
                                                       .rate = 1e-3,
                                                       .pressure_tolerance = spec.tolerance,
-                                                      .kinetic_tolerance = spec.tolerance});
+                                                      .kinetic_tolerance = spec.tolerance,
+                                                      .max_time = 3e4});
   stepper.start();
   driver->begin(stepper);
   while (!driver->finished()) {

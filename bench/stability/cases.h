@@ -54,6 +54,7 @@ OutputFile csv(const Folder& folder, const std::string& name, const std::string&
 
 /// The sweeps; each writes its tables into the folder.
 void time_step(const Folder& folder);
+void contacts(const Folder& folder);
 void spectrum(const Folder& folder);
 void energy(const Folder& folder);
 void cycles(const Folder& folder);

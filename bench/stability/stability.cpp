@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   };
   using namespace boba::bench;
   for (const Sweep& sweep : {Sweep{"time_step", "largest stable step: linearised operator and experiment", time_step},
+                             Sweep{"contacts", "the same for packings under pressure", contacts},
                              Sweep{"spectrum", "growth of an undamped grain, from the spectrum", spectrum},
                              Sweep{"energy", "energy ledgers of bulk over closed loops of strain; undamped grains left alone", energy},
                              Sweep{"cycles", "the same ledger for sheared packings, and for larger and larger bulk", cycles},

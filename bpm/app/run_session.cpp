@@ -77,8 +77,7 @@ public:
       return run_stages();
     } catch (const std::exception& error) {
       progress_.finish();
-      log_.error(error.what());
-      log_.say("the last checkpoints are kept in " + setup_.folder.checkpoints().string());
+      log_.last_words(error.what(), "the last checkpoints are kept in " + setup_.folder.checkpoints().string());
       throw;
     }
   }
