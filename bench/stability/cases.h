@@ -61,6 +61,7 @@ void cycles(const Folder& folder);
 void conservation(const Folder& folder);
 void rounding(const Folder& folder);
 void rest(const Folder& folder);
+void rest_mixed(const Folder& folder);
 void barostat(const Folder& folder);
 
 } // namespace boba::bench

@@ -89,6 +89,7 @@ def plot_energy(folder):
 
 def plot_rounding(folder):
     growth, rest, momenta = (table(folder, name) for name in ("rounding_growth", "rest", "conservation"))
+    rest += table(folder, "rest_mixed")
     figure, axes = plt.subplots(1, 3, figsize=(14, 4), constrained_layout=True)
     for k, (alpha, gamma) in enumerate(sorted({(row["alpha_kd"], row["gamma"]) for row in growth})):
         for precision, sign in (("double", "-"), ("mixed", ":")):

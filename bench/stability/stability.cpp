@@ -24,7 +24,8 @@ int main(int argc, char** argv) {
                              Sweep{"cycles", "the same ledger for sheared packings, and for larger and larger bulk", cycles},
                              Sweep{"conservation", "momenta of a free grain over 1e6 steps", conservation},
                              Sweep{"rounding", "error growth against a more precise twin", rounding},
-                             Sweep{"rest", "1e7 steps of packings at rest", rest},
+                             Sweep{"rest", "1e7 steps of a packing at rest", rest},
+                             Sweep{"rest_mixed", "the same in mixed precision", rest_mixed},
                              Sweep{"barostat", "gain scan, step response, deviation under shear", barostat}}) {
     CLI::App* command = app.add_subcommand(sweep.name, sweep.what);
     command->add_option("--output", folder, "folder for the tables")->capture_default_str();

@@ -201,8 +201,8 @@ void time_step(const Folder& folder) {
 void contacts(const Folder& folder) {
   OutputFile file =
       csv(folder, "time_step_packing", "alpha_kd,P_normalised,overlap_d,gamma,bonds_tau,linear_tau,experiment_tau");
-  for (const double alpha : {-0.8, 0.0, 2.0, 12.0, 20.0}) {
-    for (const double pressure : {0.01, 0.03, 0.1, 0.3, 0.5, 1.0, 2.0, 4.0}) {
+  for (const double alpha : {20.0, 12.0, 2.0, 0.0, -0.8}) {
+    for (const double pressure : {0.01, 0.03, 0.1, 0.3, 1.0, 2.0}) {
       try {
         pressed(file, alpha, pressure);
       } catch (const std::runtime_error& error) { // stiffer than its contacts: no such packing

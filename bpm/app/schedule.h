@@ -11,7 +11,7 @@ namespace boba {
 class Schedule {
 public:
   Schedule(const OutputInterval& every, double strain, double time)
-      : every_(every), strain_index_(index(strain, every.strain)), time_index_(index(time, every.time)) {}
+      : every_(every), strain_(strain), strain_index_(index(strain, every.strain)), time_index_(index(time, every.time)) {}
 
   /// True when the step passes a multiple of the strain or time interval. To be asked once for every step, in order.
   bool due(const StepForecast& forecast);
@@ -20,6 +20,7 @@ private:
   static std::int64_t index(double value, const std::optional<double>& interval);
 
   OutputInterval every_;
+  double strain_;
   std::int64_t strain_index_, time_index_;
 };
 

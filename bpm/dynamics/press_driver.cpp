@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/dynamics/press_driver.h"
 
+#include "bpm/dynamics/step_count.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,7 +13,7 @@ namespace boba {
 void PressDriver::begin(Stepper& stepper) {
   dt_ = stepper.options().dt;
   stage_.ends == PressStage::Ends::walls ? begin_walls(stepper) : begin_clamps(stepper);
-  n_steps_ = static_cast<std::int64_t>(std::ceil(stage_.strain * height_ / (2.0 * std::abs(stage_.velocity) * dt_) - 1e-6));
+  n_steps_ = step_count(stage_.strain * height_ / (2.0 * std::abs(stage_.velocity)), dt_);
 }
 
 void PressDriver::begin_walls(Stepper& stepper) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/dynamics/timed_driver.h"
 
+#include "bpm/dynamics/step_count.h"
+
 #include <cmath>
 
 namespace boba {
@@ -9,8 +11,7 @@ TimedDriver::TimedDriver(const HoldStage& stage) : hold_time_(stage.time) { shea
 
 void TimedDriver::begin(Stepper& stepper) {
   const double duration = is_shear_ ? shear_.strain / std::abs(shear_.rate) : hold_time_;
-  // A duration that is a whole number of steps up to rounding is that number.
-  n_steps_ = static_cast<std::int64_t>(std::ceil(duration / stepper.options().dt - 1e-6));
+  n_steps_ = step_count(duration, stepper.options().dt);
   if (shear_.barostat) {
     const double modulus = shear_.barostat->gain ? 1.0 : stepper.affine_bulk_modulus();
     gain_ = barostat_gain(*shear_.barostat, {modulus, stepper.sound_crossing(modulus), shear_.rate});

@@ -42,6 +42,38 @@ double volume(const TemplateSpec& spec) {
   }
 }
 
+constexpr double longest = 1e4; // d
+
+/// As given: lengths, or with a number of nodes proportions.
+void validate_size(const TemplateSpec& spec) {
+  if (is_box(spec.shape)) {
+    for (int a = 0; a < 3; ++a) {
+      require_between(fmt::format("size[{}]", a).c_str(), spec.size[a], spec.n_nodes ? 1e-3 : 2.0, longest);
+    }
+  } else if (spec.shape == Shape::cylinder) {
+    require_between("radius", spec.radius, spec.n_nodes ? 1e-3 : 1.5, longest);
+    require_between("height", spec.height, spec.n_nodes ? 1e-3 : 2.0, longest);
+  } else if (!spec.n_nodes) {
+    require_between("radius", spec.radius, 1.5, longest);
+  }
+}
+
+/// A sheet or a thread thinner than two nodes holds no network, however often it is tried.
+void validate_scaled_size(const TemplateSpec& spec) {
+  const double scale = std::cbrt(*spec.n_nodes / (spec.density * volume(spec)));
+  const auto require = [&](const std::string& name, double length) {
+    require_between(fmt::format("{} (scaled to {} nodes)", name, *spec.n_nodes).c_str(), scale * length, 2.0, longest);
+  };
+  if (is_box(spec.shape)) {
+    for (int a = 0; a < 3; ++a) {
+      require(fmt::format("size[{}]", a), spec.size[a]);
+    }
+  } else if (spec.shape == Shape::cylinder) {
+    require("diameter", 2.0 * spec.radius);
+    require("height", spec.height);
+  }
+}
+
 } // namespace
 
 std::string to_string(Shape shape) {
@@ -82,17 +114,7 @@ bool is_single_node(const TemplateSpec& spec) {
 }
 
 void validate(const TemplateSpec& spec) {
-  constexpr double longest = 1e4;
-  if (is_box(spec.shape)) {
-    for (int a = 0; a < 3; ++a) {
-      require_between(fmt::format("size[{}]", a).c_str(), spec.size[a], spec.n_nodes ? 1e-3 : 2.0, longest);
-    }
-  } else if (spec.shape == Shape::cylinder) {
-    require_between("radius", spec.radius, spec.n_nodes ? 1e-3 : 1.5, longest);
-    require_between("height", spec.height, spec.n_nodes ? 1e-3 : 2.0, longest);
-  } else if (!spec.n_nodes) {
-    require_between("radius", spec.radius, 1.5, longest);
-  }
+  validate_size(spec);
   if (spec.shape == Shape::periodic_box && spec.surface == Surface::wall) {
     throw std::invalid_argument("grain template: surface = \"wall\" has no meaning for a periodic_box; leave it out");
   }
@@ -103,6 +125,7 @@ void validate(const TemplateSpec& spec) {
   }
   if (spec.n_nodes) {
     require_between("n_nodes", *spec.n_nodes, smallest_grain, largest_grain);
+    validate_scaled_size(spec);
   } else {
     require_between("number of nodes (from the size)", spec.density * volume(spec), smallest_grain, largest_grain);
   }

@@ -15,7 +15,7 @@ namespace boba {
 
 namespace {
 
-constexpr std::size_t chunk_size = 1 << 16;
+constexpr std::size_t least_chunk = 1 << 11, largest_chunk = 1 << 16;
 constexpr std::size_t longest_line = 1 << 20;
 
 /// A field for a message: shortened, and without bytes that would upset a terminal.
@@ -47,7 +47,10 @@ LineReader::LineReader(const std::filesystem::path& path) : path_(path) {
   if (!file_) {
     fail_file(fmt::format("cannot be opened: {}", std::strerror(errno)));
   }
-  gzbuffer(file_.get(), chunk_size);
+  // A small file asks for little memory, however many of them are read.
+  const std::uintmax_t size = std::filesystem::file_size(path, ignored);
+  chunk_size_ = ignored ? largest_chunk : std::clamp<std::size_t>(size + 1, least_chunk, largest_chunk);
+  gzbuffer(file_.get(), static_cast<unsigned>(chunk_size_));
 }
 
 bool LineReader::fill() {
@@ -57,15 +60,15 @@ bool LineReader::fill() {
   buffer_.erase(0, begin_);
   begin_ = 0;
   const std::size_t kept = buffer_.size();
-  buffer_.resize(kept + chunk_size);
-  const int got = gzread(file_.get(), buffer_.data() + kept, chunk_size);
+  buffer_.resize(kept + chunk_size_);
+  const int got = gzread(file_.get(), buffer_.data() + kept, static_cast<unsigned>(chunk_size_));
   buffer_.resize(kept + static_cast<std::size_t>(got > 0 ? got : 0));
   int code = Z_OK;
   const char* message = gzerror(file_.get(), &code);
   if (got < 0 || (code != Z_OK && code != Z_STREAM_END)) {
     fail(fmt::format("damaged or truncated compressed data ({})", code == Z_ERRNO ? std::strerror(errno) : message));
   }
-  at_end_ = static_cast<std::size_t>(got) < chunk_size;
+  at_end_ = static_cast<std::size_t>(got) < chunk_size_;
   return got > 0;
 }
 

@@ -61,6 +61,7 @@ private:
   std::string buffer_;
   std::size_t begin_ = 0; ///< of what is not yet handed out in buffer_
   bool at_end_ = false;
+  std::size_t chunk_size_ = 0; ///< bytes asked for at a time
   std::string line_;
   std::vector<std::string_view> fields_;
   std::int64_t line_number_ = 0;

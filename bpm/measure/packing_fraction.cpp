@@ -24,9 +24,10 @@ void check(const GrainNodes& grains, std::span<const ConvexHull> hulls, const Pa
     throw std::invalid_argument(
         fmt::format("packing fraction: n_points is {}; it must be at least 1", options.n_points));
   }
-  if (options.target_error && !(*options.target_error > 0.0 && *options.target_error < 0.5)) {
-    throw std::invalid_argument(
-        fmt::format("packing fraction: target_error is {}; it must lie between 0 and 0.5", *options.target_error));
+  constexpr double least_error = 1e-5; // three thousand million points
+  if (options.target_error && !(*options.target_error >= least_error && *options.target_error <= 0.5)) {
+    throw std::invalid_argument(fmt::format("packing fraction: target_error is {}; it must lie between {} and 0.5",
+                                            *options.target_error, least_error));
   }
   if (!(options.node_diameter >= 0.0) || !std::isfinite(options.node_diameter)) {
     throw std::invalid_argument(

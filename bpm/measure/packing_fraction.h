@@ -14,7 +14,7 @@ struct PackingFractionOptions {
   std::uint64_t seed = 1;
   std::int64_t n_points = 100000; ///< random points; where a target error is given, the first batch at most
   std::optional<double> target_error =
-      std::nullopt;           ///< draw points until the standard error of `both` is at most this; > 0
+      std::nullopt;           ///< draw points until the standard error of `both` is at most this; 1e-5 .. 0.5
   double node_diameter = 1.0; ///< d
 };
 

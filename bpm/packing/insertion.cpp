@@ -18,6 +18,7 @@ namespace {
 /// just below.
 constexpr double densest = 0.60;
 constexpr int most_sweeps = 10000;
+constexpr double largest_edge = 1e7; ///< d; double positions still resolve 2e-9 d there
 constexpr double inflation = 1e-3; ///< the spheres that are pushed apart are a little larger than the real ones
 
 double sphere_volume(double radius) {
@@ -197,6 +198,10 @@ Packing insert_at_random(const Insertion& insertion) {
                                             insertion.grains.size(), insertion.packing_fraction));
   }
   const double edge = std::cbrt(reference_volume_of(insertion) / insertion.packing_fraction);
+  if (!(edge < largest_edge)) {
+    throw std::invalid_argument(fmt::format("insert: packing_fraction = {:g} makes a cell of edge {:g} d; allowed: below {:g} d",
+                                            insertion.packing_fraction, edge, largest_edge));
+  }
   std::vector<double> radii;
   for (const Grain& grain : insertion.grains) {
     radii.push_back(bounding_radius(*insertion.templates[grain.template_index], insertion.diameter));

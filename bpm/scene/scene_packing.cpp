@@ -38,7 +38,11 @@ std::vector<Grain> grains_of(const Scene& scene, const PoissonTable& table) {
     Grain grain;
     grain.template_index = species.template_index;
     grain.species = static_cast<int>(s);
-    grain.alpha = resolve_alpha(species.material, scene.material, table);
+    try {
+      grain.alpha = resolve_alpha(species.material, scene.material, table);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: species.{}: {}", scene.path.string(), s, error.what()));
+    }
     grains.insert(grains.end(), static_cast<std::size_t>(species.count), grain);
   }
   return grains;

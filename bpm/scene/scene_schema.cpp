@@ -110,7 +110,7 @@ std::vector<SceneSection> general_sections() {
                                     "all, or some of stress, packing-fraction, shape, scattering, order, "
                                     "contacts, motion, separated by commas; each in one `[[measure]]` only")),
                   integer_key("points", 1.0, 1e9, "100000", "random points of the packing fraction"),
-                  above_key("target_error", "", 0.0, 0.5, "",
+                  real_key("target_error", "", 1e-5, 0.5, "",
                             "draw points until the packing fraction's standard error is at most this"),
                   above_key("q_max", "1/d", 0.0, 20.0, "1", "scattering: largest wave number"),
                   choice_key("neighbours", {"solid-angle", "voronoi"}, "\"solid-angle\"",
@@ -163,7 +163,7 @@ std::vector<SceneSection> stage_sections() {
       stage("insert",
             "Places all grains at random, without overlap and at random angles, in a cubic periodic cell. First stage "
             "only.",
-            {above_key("packing_fraction", "", 0.0, 0.74, "0.4",
+            {real_key("packing_fraction", "", 1e-9, 0.74, "0.4",
                        "sum of the grains' reference volumes over the cell's volume"),
              boolean_key("rotate", "true", "turn every grain at random")}),
       stage("specimen",

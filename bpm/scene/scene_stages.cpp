@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/scene/scene_stages.h"
 
+#include "bpm/dynamics/step_count.h"
 #include "bpm/io/input_error.h"
 
 #include <fmt/format.h>
@@ -104,6 +105,22 @@ void check_cell(const SceneTable& table, const SceneStage& stage, const Scene& s
   }
 }
 
+/// A stage that no run could end is a slip of the pen. What only the specimen's height tells is found when it begins.
+void check_length(const SceneTable& table, const SceneStage& stage, double dt) {
+  const auto check = [&](const char* key, double duration) {
+    if (!(duration / dt <= most_steps)) {
+      table.fail(key, fmt::format("makes a stage of {:g} steps; allowed: at most {:g}", duration / dt, most_steps));
+    }
+  };
+  if (const auto* hold = std::get_if<HoldStage>(&stage.stage)) {
+    check("time", hold->time);
+  } else if (const auto* shear = std::get_if<ShearStage>(&stage.stage)) {
+    check("rate", shear->strain / std::abs(shear->rate));
+  } else if (const auto* press = std::get_if<PressStage>(&stage.stage)) {
+    check("velocity", press->strain / std::abs(press->velocity)); // of the lowest specimen, two nodes high
+  }
+}
+
 } // namespace
 
 std::vector<SceneStage> read_stages(const SceneTables& tables, const Scene& scene) {
@@ -124,6 +141,7 @@ std::vector<SceneStage> read_stages(const SceneTables& tables, const Scene& scen
                                           : read_press(list[i]);
     stage.index = static_cast<int>(i);
     check_cell(list[i], stage, scene);
+    check_length(list[i], stage, scene.options.dt);
     stages.push_back(stage);
   }
   if (from_files && stages.empty()) {

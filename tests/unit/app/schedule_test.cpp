@@ -43,6 +43,16 @@ TEST(Schedule, ARunThatGoesOnWritesAtTheSameSteps) {
   }
 }
 
+/// Intervals shorter than a step are due at every step, however short: 1e-320 has more of them than can be counted.
+TEST(Schedule, ATinyIntervalIsDueAtEveryStep) {
+  for (const double tiny : {1e-3, 1e-12, 1e-300, 1e-320}) {
+    EXPECT_EQ(due_steps({std::nullopt, tiny}, 0.0, 0, 50).size(), 50U) << tiny;
+    EXPECT_EQ(due_steps({std::nullopt, tiny}, 0.0, 20, 50).size(), 30U) << tiny;
+    EXPECT_EQ(due_steps({1e-2 * tiny, std::nullopt}, 1e-3, 0, 50).size(), 50U) << tiny;
+    EXPECT_TRUE(due_steps({tiny, std::nullopt}, 0.0, 0, 50).empty()) << tiny;
+  }
+}
+
 TEST(Schedule, LongRunsKeepTheirPace) {
   EXPECT_EQ(due_steps({0.01, std::nullopt}, 1e-3, 0, 1000000).size(), 10000U);
 }
