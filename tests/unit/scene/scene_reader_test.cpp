@@ -161,7 +161,7 @@ TEST(SceneReader, NamesFileLineKeyValueAndWhatIsAllowed) {
       {"poisson = -0.25", "poisson = 0.5001", {"species.1.poisson", "at most 0.5"}},
       {"type = \"insert\"", "type = \"inset\"", {"stage.0.type", "Did you mean \"insert\"?"}},
       {"type = \"insert\"\npacking_fraction = 0.3", "type = \"hold\"\ntime = 3.0", {"\"insert\" or \"specimen\""}},
-      {"packing_fraction = 0.3", "packing_fraction = 0.9", {"stage.0.packing_fraction", "at most 0.74"}},
+      {"packing_fraction = 0.3", "packing_fraction = 0.9", {"stage.0.packing_fraction", "from 1e-09 to 0.74"}},
       {"normalised_pressure = 0.1", "", {"stage.1.pressure", "must be given"}},
       {"normalised_pressure = 0.1", "normalised_pressure = 0.1\npressure = 1.0", {"stage.1", "one of them"}},
       {"rate = -1e-3", "", {"stage.2.rate is missing", "a number from -0.1 to 0.1 (1/tau)"}},
