@@ -133,10 +133,64 @@ def plot_barostat(folder):
     return figure
 
 
+def plot_contacts(folder):
+    """Share of the bonds' largest step that pressed packings leave."""
+    packing = table(folder, "time_step_packing")
+    for row in packing:
+        row["operator"] = row["linear_tau"] / row["bonds_tau"]
+        row["experiment"] = row["experiment_tau"] / row["bonds_tau"]
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4), constrained_layout=True, sharey=True)
+    for axis, gamma, title in ((axes[0], 1.0, "damped, gamma = 1"), (axes[1], 0.0, "undamped")):
+        for k, alpha in enumerate(values(packing, "alpha_kd")):
+            axis.plot(*curve(packing, "overlap_d", "operator", alpha_kd=alpha, gamma=gamma), "-", color=f"C{k}", lw=1)
+            axis.plot(*curve(packing, "overlap_d", "experiment", alpha_kd=alpha, gamma=gamma), "o", color=f"C{k}", ms=4, label=f"alpha = {alpha:g}")
+        axis.axhline(0.6, color="k", lw=0.8, ls=":", label='dt = "auto"')
+        axis.set(xlabel="deepest overlap (d)", title=title, ylim=(0, 1.1), xlim=(0, 0.5))
+    axes[0].set(ylabel="largest stable dt / that of the bonds")
+    axes[0].legend(fontsize=7)
+    return figure
+
+
+def plot_spectrum(folder):
+    spectrum = table(folder, "spectrum")
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4), constrained_layout=True)
+    for n in values(spectrum, "nodes"):
+        axes[0].plot(*curve(spectrum, "alpha_kd", "rate_per_tau", nodes=n), "o-", ms=3, lw=1, label=f"{n:.0f} nodes")
+    axes[0].set(xlabel="alpha (k d)", ylabel="growth without damping (1/tau)", title="spectrum of the linearised law")
+    axes[0].legend(fontsize=7)
+    axes[1].semilogy(*curve(spectrum, "alpha_kd", "sufficient_gamma", nodes=40.0), "o-", ms=3, lw=1)
+    axes[1].axhline(1.0, color="k", lw=0.8, ls=":")
+    axes[1].set(xlabel="alpha (k d)", ylabel="gamma", title="least damping, 40 nodes (dotted: published)")
+    return figure
+
+
+def plot_rest(folder):
+    rest = table(folder, "rest") + table(folder, "rest_mixed")
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4), constrained_layout=True)
+    for precision, colour in (("double", "C0"), ("mixed", "C1")):
+        axes[0].loglog(*curve(rest, "steps", "kinetic_kd2", precision=precision), color=colour, lw=1, label=precision)
+        axes[1].loglog(*curve(rest, "steps", "moved_d", precision=precision), color=colour, lw=1, label=precision)
+    axes[0].set(xlabel="steps", ylabel="kinetic energy (k d^2)", title="packing at rest, alpha = 2, damped")
+    axes[1].set(xlabel="steps", ylabel="farthest node (d)", title="moved since step 10 000")
+    axes[0].legend(fontsize=7)
+    return figure
+
+
+PICTURES = {
+    "time-step": (plot_time_step, ("time_step_grain", "time_step_packing", "time_step_contact")),
+    "contacts": (plot_contacts, ("time_step_packing",)),
+    "spectrum": (plot_spectrum, ("spectrum",)),
+    "energy": (plot_energy, ("energy_left_alone", "energy_loops")),
+    "rounding": (plot_rounding, ("rounding_growth", "conservation")),
+    "rest": (plot_rest, ("rest", "rest_mixed")),
+    "barostat": (plot_barostat, ("barostat_step", "barostat_shear")),
+}
+
+
 def main(tables, pictures):
-    for name, plot in (("time-step", plot_time_step), ("energy", plot_energy), ("rounding", plot_rounding), ("barostat", plot_barostat)):
-        figure = plot(pathlib.Path(tables))
-        figure.savefig(pathlib.Path(pictures) / f"stability-{name}.png", dpi=80)
+    for name, (plot, needed) in PICTURES.items():
+        if all(table(pathlib.Path(tables), part) for part in needed):
+            plot(pathlib.Path(tables)).savefig(pathlib.Path(pictures) / f"stability-{name}.png", dpi=80)
 
 
 if __name__ == "__main__":
