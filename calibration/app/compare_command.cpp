@@ -134,6 +134,9 @@ Command add_compare(CLI::App& app) {
   spheres->add_option("--press", sphere->presses, "walls, mirror, twin, images; several separated by commas")
       ->delimiter(',')
       ->check(CLI::IsMember({"walls", "mirror", "twin", "images"}));
+  spheres->add_option("--models", sphere->settings.models, "Continuum models, separated by commas; all if not given")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"linear", "linear_springs", "linear_layer", "finite", "finite_layer", "neo_layer"}));
   return {command, [cylinders, cylinder, sphere] {
             return cylinders->parsed() ? run(*cylinder, compare_cylinder) : run(*sphere, compare_sphere);
           }};

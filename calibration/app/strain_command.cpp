@@ -106,8 +106,8 @@ void write_results(const StrainOptions& options, const std::vector<UniaxialPoint
   law["alpha"] = options.alpha;
   law["axial_residual"] = fit.axial_residual;
   law["lateral_residual"] = fit.lateral_residual;
-  for (const FoamTerm& term : fit.terms) {
-    law["foam_terms"].push_back({{"mu", term.mu}, {"alpha", term.exponent}, {"nu", term.poisson}});
+  for (const continuum::FoamTerm& term : fit.terms) {
+    law["foam_terms"].push_back({{"mu", term.shear}, {"alpha", term.exponent}, {"nu", term.poisson}});
   }
   write_text(directory / "foam.json", law.dump(2) + "\n");
   run_python("plot_strain.py", {(directory / "curve.csv").string(), (directory / "curve.png").string()});
@@ -143,8 +143,8 @@ int strain(const StrainOptions& options) {
   std::copy_if(points.begin(), points.end(), std::back_inserter(fitted),
                [&](const UniaxialPoint& point) { return options.fit_tension || point.axial_stretch < 1.0; });
   const FoamFit fit = fit_foam(fitted, options.terms);
-  for (const FoamTerm& term : fit.terms) {
-    fmt::print("foam term: mu = {:.6f} k/d, exponent = {:.5f}, nu = {:.5f}\n", term.mu, term.exponent, term.poisson);
+  for (const continuum::FoamTerm& term : fit.terms) {
+    fmt::print("foam term: mu = {:.6f} k/d, exponent = {:.5f}, nu = {:.5f}\n", term.shear, term.exponent, term.poisson);
   }
   fmt::print("residual: {:.2e} of the largest stress along the axis, {:.2e} across\n", fit.axial_residual,
              fit.lateral_residual);

@@ -64,36 +64,56 @@ std::vector<GrainTemplate> grains_of(const ComparisonSettings& settings) {
 }
 
 /// Slabs across the three axes of the bulk.
-std::vector<SlabState> slabs_of(const ComparisonSettings& settings, const Solid& solid) {
+std::vector<std::vector<SlabState>> slabs_of(const ComparisonSettings& settings, const Solid& solid) {
   const double modulus = solid.constants.young() / (1.0 - std::pow(solid.constants.poisson(), 2));
-  std::vector<SlabState> states;
+  std::vector<std::vector<SlabState>> slabs;
   for (int axis = 0; axis < 3; ++axis) {
     GrainTemplate box = settings.bulk;
     for (Eigen::Vector3d& x : box.position) {
       x = Eigen::Vector3d(x[axis], x[(axis + 1) % 3], x[(axis + 2) % 3]);
     }
-    const auto more = press_slab(box, solid.alpha, slab_pressure * modulus);
-    states.insert(states.end(), more.begin(), more.end());
+    slabs.push_back(press_slab(box, solid.alpha, slab_pressure * modulus));
   }
-  return states;
+  return slabs;
 }
 
-/// The solid ends where its bonds end. The layer on it is, for a cut grain, that of a flat cut through the bulk; for a
-/// walled grain its outermost nodes, a spring each.
-Surface surface_of(const ComparisonSettings& settings, const Solid& solid, const GrainTemplate& grain) {
+/// How the layer's place differs between slabs of the three axes: the standard error of their mean, d.
+double place_error(const std::vector<std::vector<SlabState>>& slabs) {
+  std::vector<double> places;
+  for (const auto& states : slabs) {
+    places.push_back(fit_surface(states).beyond);
+  }
+  return estimate(places).error;
+}
+
+/// The solid ends where its bonds end, in the mean of all bodies. The layer on it is, for a cut grain, that of a flat
+/// cut through the bulk; for a walled grain its outermost nodes, a spring each.
+Surface surface_of(const ComparisonSettings& settings, const Solid& solid, const std::vector<GrainTemplate>& grains) {
   const BulkDensity density = bulk_density(settings.bulk);
-  Surface surface{.body = bond_radius(grain, density), .springs = surface_rule(grain, density.nodes)};
+  Surface surface{.springs = surface_rule(grains.front(), density.nodes)};
+  surface.springs.radius = 0.0;
+  for (const GrainTemplate& grain : grains) {
+    surface.body += bond_radius(grain, density) / static_cast<double>(grains.size());
+    surface.springs.radius += surface_rule(grain, density.nodes).radius / static_cast<double>(grains.size());
+  }
   surface.radius = surface.springs.radius;
   surface.c1 = surface.springs.c1;
   surface.c3 = surface.springs.c3;
   surface.report = {{"rule", "layer of node springs"}};
   if (settings.surface == TemplateSpec::Surface::cut) {
-    const std::vector<SlabState> states = slabs_of(settings, solid);
+    const std::vector<std::vector<SlabState>> slabs = slabs_of(settings, solid);
+    std::vector<SlabState> states;
+    for (const auto& slab : slabs) {
+      states.insert(states.end(), slab.begin(), slab.end());
+    }
     const FlatSurface flat = fit_surface(states);
     surface.radius = surface.body + flat.beyond;
     surface.c1 = flat.c1;
     surface.c3 = flat.c3;
-    surface.report = {{"rule", "flat cut face"}, {"beyond_body", flat.beyond}, {"residual", flat.residual}};
+    surface.report = {{"rule", "flat cut face"},
+                      {"beyond_body", flat.beyond},
+                      {"beyond_body_error", place_error(slabs)},
+                      {"residual", flat.residual}};
     for (const SlabState& state : states) {
       surface.report["slab"].push_back({{"pressure", state.pressure}, {"beyond_body", state.beyond_body()}});
     }
@@ -147,12 +167,16 @@ json run_models(const ComparisonSettings& settings, const Solid& solid, const Su
       approach > 0.0 ? approaches.push_back(approach) : static_cast<void>(++skipped);
     }
     json loads = run_continuum("sphere", model, "approach", approaches, settings.folder);
-    if (model.law == "foam" &&
-        loads.size() < approaches.size()) { // two terms may run away beyond the strains they were fitted to
+    for (json& load : loads) {
+      load["foam_terms"] = model.law == "foam" ? model.foam_terms : 0;
+    }
+    if (model.law == "foam" && loads.size() < approaches.size()) {
+      // Two terms may run away beyond the strains they were fitted to; there one term, which fits less well.
       model.foam_terms = 1;
       json simpler = run_continuum("sphere", model, "approach", approaches, settings.folder);
-      if (simpler.size() > loads.size()) {
-        loads = std::move(simpler);
+      for (std::size_t l = loads.size(); l < simpler.size(); ++l) {
+        loads.push_back(simpler[l]);
+        loads.back()["foam_terms"] = 1;
       }
     }
     json& all = results[name] = json::array();
@@ -163,13 +187,21 @@ json run_models(const ComparisonSettings& settings, const Solid& solid, const Su
       all.push_back(std::move(load));
     }
   };
-  const double body = surface.body, layer = surface.radius;
-  run("linear", body, layer, 0.0, 0.0, "");
-  run("linear_springs", body, surface.springs.radius, surface.springs.c1, surface.springs.c3, "");
-  run("linear_layer", body, layer, surface.c1, surface.c3, "");
-  run("finite", body, layer, 0.0, 0.0, "foam");
-  run("finite_layer", body, layer, surface.c1, surface.c3, "foam");
-  run("neo_layer", body, layer, surface.c1, surface.c3, "neo-hookean");
+  const double body = surface.body, layer = surface.radius, c1 = surface.c1, c3 = surface.c3;
+  const auto wanted = [&](const char* name) {
+    return settings.models.empty() || std::ranges::find(settings.models, name) != settings.models.end();
+  };
+  const auto run_wanted = [&](const char* name, double plate, double first, double third, const char* law) {
+    if (wanted(name)) {
+      run(name, body, plate, first, third, law);
+    }
+  };
+  run_wanted("linear", layer, 0.0, 0.0, "");
+  run_wanted("linear_springs", surface.springs.radius, surface.springs.c1, surface.springs.c3, "");
+  run_wanted("linear_layer", layer, c1, c3, "");
+  run_wanted("finite", layer, 0.0, 0.0, "foam");
+  run_wanted("finite_layer", layer, c1, c3, "foam");
+  run_wanted("neo_layer", layer, c1, c3, "neo-hookean");
   return results;
 }
 
@@ -184,11 +216,21 @@ template <class Value> json of_models(const json& models, std::size_t load, Valu
   return values;
 }
 
-/// Slope of the force from the previous load, both sides alike.
+/// One number of each load of a model; null where it has none.
+json of_loads(const json& loads, const char* name) {
+  json values = json::array();
+  for (const json& load : loads) {
+    values.push_back(load.is_null() ? json() : load.at(name));
+  }
+  return values;
+}
+
+/// Slope of the force from the previous load, both sides alike; none where the law was fitted anew between them.
 json stiffness_of_models(const json& models, std::size_t load) {
   json values = json::object();
   for (const auto& [model, loads] : models.items()) {
-    if (load > 0 && load < loads.size() && !loads[load - 1].is_null()) {
+    if (load > 0 && load < loads.size() && !loads[load - 1].is_null() &&
+        loads[load]["foam_terms"] == loads[load - 1]["foam_terms"]) {
       values[model] = 2.0 * (loads[load]["force"].get<double>() - loads[load - 1]["force"].get<double>()) /
                       (loads[load]["approach"].get<double>() - loads[load - 1]["approach"].get<double>());
     }
@@ -292,7 +334,7 @@ void add_rows(json& document, const Solid& solid, const Surface& surface, Press 
     imbalance.push_back(sample.back().imbalance);
   }
   double continuum_seconds = 0.0;
-  for (const json& load : models.at("finite_layer")) {
+  for (const json& load : models.value("finite_layer", json::array())) {
     continuum_seconds += load.is_null() ? 0.0 : load["seconds"].get<double>();
   }
   document["cases"].push_back({{"alpha", solid.alpha},
@@ -303,6 +345,7 @@ void add_rows(json& document, const Solid& solid, const Surface& surface, Press 
                                {"surface", surface.report},
                                {"seconds", seconds},
                                {"wall_imbalance", imbalance},
+                               {"foam_terms", of_loads(models.value("finite_layer", json::array()), "foam_terms")},
                                {"continuum_seconds", continuum_seconds},
                                {"profiles", profiles}});
 }
@@ -314,7 +357,7 @@ json compare_sphere(const ComparisonSettings& settings) {
   const std::vector<GrainTemplate> grains = grains_of(settings);
   for (const double alpha : settings.alphas) {
     const Solid solid = solid_of(settings, alpha, 0.2);
-    const Surface surface = surface_of(settings, solid, grains.front());
+    const Surface surface = surface_of(settings, solid, grains);
     SurfaceRule place = surface.springs;
     place.radius = surface.radius;
     place.body = surface.body;

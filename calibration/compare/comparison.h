@@ -25,6 +25,7 @@ struct ComparisonSettings {
   std::uint64_t seed = 1;
   std::vector<double> loads; ///< approach / R of one contact, or strains; rising
   std::vector<Press> presses = {Press::walls};
+  std::vector<std::string> models; ///< of a sphere's continuum (docs/formats-calibration.md); empty: all
   bool fields = false;          ///< write node fields and the continuum's for the last load
   std::filesystem::path folder; ///< the continuum's results go here
   /// Elastic constants known already (a table); else the bulk is calibrated afresh.

@@ -13,9 +13,10 @@ namespace boba::calibration {
 
 namespace {
 
-constexpr double largest_step = 0.02; // of strain
-constexpr double tolerance = 1e-9;    // k d, root mean square
-constexpr int bins = 8;               // of |z|
+constexpr double largest_step = 0.02;   // of strain
+constexpr double tolerance = 1e-7;      // k d, root mean square residual of a state that is told
+constexpr double path_tolerance = 1e-4; // k d, of the states on the way to it
+constexpr int bins = 8;                 // of |z|
 
 /// How far behind the face at height z0 the slab beyond it acts; `side` is -1 for the lower slab, +1 for the upper.
 double hold_depth(const GrainTemplate& cylinder, double z0, double side) {
@@ -129,7 +130,7 @@ std::vector<CylinderState> CylinderPress::squeeze(double alpha, CylinderEnds end
         }
         network.move(n, {0.0, 0.0, -change * z});
       }
-      network.relax(tolerance);
+      network.relax(s + 1 < steps ? path_tolerance : tolerance);
     }
     at = goal;
     CylinderState state = measure(network.position(), goal);

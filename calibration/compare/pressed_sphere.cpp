@@ -16,7 +16,8 @@ namespace {
 
 constexpr double k3 = 50.0;              // k/d^2, the engine's default
 constexpr double largest_step = 0.1;     // d, of one contact's approach between two relaxed states
-constexpr double force_tolerance = 1e-8; // k d, root mean square residual
+constexpr double force_tolerance = 1e-7; // k d, root mean square residual of a state that is told
+constexpr double path_tolerance = 1e-3;  // k d, of the states on the way to it
 constexpr int profile_bins = 12;
 
 /// The grain's nodes, then those of a copy when it is pressed against one, apart along z so that they do not touch.
@@ -67,7 +68,7 @@ public:
   }
 
   /// Moves the planes to a gap (distance of the two planes of one grain, d) and relaxes.
-  void go_to(double gap) {
+  void go_to(double gap, double tolerance) {
     const double change = gap - gap_;
     std::vector<Vector3> position = network_.position();
     if (press_ == Press::images) {
@@ -82,7 +83,7 @@ public:
       network_.set_positions(position);
       network_.set_walls(-gap, gap);
     }
-    network_.relax(force_tolerance);
+    network_.relax(tolerance);
     gap_ = gap;
   }
 
@@ -218,7 +219,7 @@ std::vector<SphereState> press_sphere(const GrainTemplate& sphere, double alpha,
     const double goal = 2.0 * (rule.radius - approach), from = machine.gap();
     const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(goal - from) / (2.0 * largest_step))));
     for (int s = 1; s <= steps; ++s) {
-      machine.go_to(from + (goal - from) * s / steps);
+      machine.go_to(from + (goal - from) * s / steps, s < steps ? path_tolerance : force_tolerance);
     }
     states.push_back(machine.state());
     states.back().seconds = processor_seconds() - start;

@@ -23,13 +23,18 @@ struct Level {
   double to_rigid = 0.0; ///< the same over the rigid plate's
 };
 
-Level level_of(int n_nodes, int samples) {
-  ComparisonSettings settings = comparison_case(0.0, {0.05, 0.1}, "resolution");
+Level level_of(double alpha, int n_nodes, int samples) {
+  ComparisonSettings settings = comparison_case(alpha, {0.05, 0.1}, "resolution");
   settings.bulk = test_box(4000);
   settings.n_nodes = n_nodes;
   settings.samples = samples;
+  settings.models = {"linear_layer", "finite", "finite_layer", "neo_layer"};
   const auto document = compare_sphere(settings);
   std::filesystem::remove_all(settings.folder);
+  if (n_nodes == 5137) {
+    expect_force_of_the_layer(document, alpha, 0.05);
+    expect_force_of_the_layer(document, alpha, 0.1);
+  }
   const auto& force = row_of(document, "walls", 0.1, "force");
   const double mean = force.at("particles"), layer = force.at("continuum").at("finite_layer");
   // Bodies of one resolution scatter by 5 % at 5137 nodes and elsewhere like the inverse root of the number of nodes in
@@ -42,17 +47,24 @@ Level level_of(int n_nodes, int samples) {
                     .error = samples > 3 ? force.at("particles_error").get<double>() / layer
                                          : scatter / std::sqrt(double(samples)),
                     .to_rigid = mean / force.at("continuum").at("finite").get<double>()};
-  fmt::print("{} nodes, {} bodies: F over the layer's {:.3f} +- {:.3f}, over the rigid plate's {:.3f}\n", n_nodes,
-             samples, level.ratio, level.error, level.to_rigid);
+  const auto& bulge = row_of(document, "walls", 0.1, "bulge_number");
+  fmt::print("alpha = {}, {} nodes, {} bodies: F over the layer's {:.3f} +- {:.3f}, over the rigid plate's {:.3f}; "
+             "u_eq E R / F {:.4f} +- {:.4f}, linear continuum {:.4f}\n",
+             alpha, n_nodes, samples, level.ratio, level.error, level.to_rigid, bulge.at("particles").get<double>(),
+             samples > 1 ? bulge.at("particles_error").get<double>() : 0.0,
+             bulge.at("continuum").at("linear_layer").get<double>());
   std::fflush(stdout);
   return level;
 }
 
+class Resolution : public ::testing::TestWithParam<double> {};
+
 /// The layer is as thick in d for every R, so the continuum with the layer tends to the rigid plate: the limit of the
 /// particles' force over the layer's is the limit of their force over the rigid plate's, without the slow (d/R)^0.65
 /// by which each of the two comes up. A weighted straight line in d / R. Tolerance: 5 % and the line's standard error.
-TEST(Resolution, ExtrapolatedTheForceIsTheRigidPlates) {
-  const std::vector<Level> levels = {level_of(1000, 16), level_of(5137, 12), level_of(20000, 1)};
+TEST_P(Resolution, ExtrapolatedTheForceIsTheRigidPlates) {
+  const double alpha = GetParam();
+  const std::vector<Level> levels = {level_of(alpha, 1000, 16), level_of(alpha, 5137, 12), level_of(alpha, 20000, 2)};
   double w = 0, wx = 0, wxx = 0, wy = 0, wxy = 0;
   for (const Level& level : levels) {
     const double weight = std::pow(level.error, -2), x = level.inverse_radius;
@@ -60,13 +72,14 @@ TEST(Resolution, ExtrapolatedTheForceIsTheRigidPlates) {
   }
   const double determinant = w * wxx - wx * wx, limit = (wy * wxx - wxy * wx) / determinant,
                error = std::sqrt(wxx / determinant);
-  expect_near(fmt::format("force over the rigid plate's for d / R = 0 (standard error {:.3f})", error), limit, 1.0,
-              0.05 + error);
-  const Level& middle = levels[1];
-  expect_near("mean force of twelve bodies of 5137 nodes over the layer's", middle.ratio, 1.0, 0.05);
-  EXPECT_LT(levels[0].to_rigid, middle.to_rigid);
-  EXPECT_LT(middle.to_rigid, levels[2].to_rigid);
+  expect_near(fmt::format("alpha = {}: force over the rigid plate's for d / R = 0 (standard error {:.3f})", alpha, error),
+              limit, 1.0, 0.05 + error);
+  EXPECT_LT(levels[0].to_rigid, levels[1].to_rigid);
+  EXPECT_LT(levels[1].to_rigid, levels[2].to_rigid);
 }
+
+INSTANTIATE_TEST_SUITE_P(Alpha, Resolution, ::testing::Values(-0.8, 0.0, 2.0, 5.0, 12.0),
+                         [](const auto& test) { return fmt::format("{}", test.index); });
 
 /// Node i and its image touch at the plane between them, as at a wall; some nodes touch a neighbour's image too.
 TEST(Presses, AMirrorImageIsNearlyAWall) {

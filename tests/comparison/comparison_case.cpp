@@ -40,4 +40,16 @@ void expect_near(const std::string& what, double measured, double reference, dou
   EXPECT_NEAR(measured, reference, tolerance) << what;
 }
 
+void expect_force_of_the_layer(const nlohmann::json& document, double alpha, double load) {
+  const auto& force = row_of(document, "walls", load, "force");
+  const auto& models = force.at("continuum");
+  const double reference = models.at("finite_layer"), error = force.at("particles_error");
+  expect_near(fmt::format("alpha = {}, approach / R = {}: mean force of {} bodies (standard error {:.1f} %)", alpha,
+                          load, force.at("samples").size(), 100.0 * error / reference),
+              force.at("particles"), reference, 0.05 * reference + error);
+  if (models.contains("neo_layer")) {
+    fmt::print("  neo-Hookean: {:.5g}\n", models.at("neo_layer").get<double>());
+  }
+}
+
 } // namespace boba::calibration

@@ -18,4 +18,8 @@ const nlohmann::json& row_of(const nlohmann::json& document, const std::string& 
 /// Prints measured, reference, difference and tolerance, and expects |measured - reference| <= tolerance (absolute).
 void expect_near(const std::string& what, double measured, double reference, double tolerance);
 
+/// Expects the mean force of the bodies within 5 % and their standard error of the finite-strain continuum with the
+/// layer; prints the neo-Hookean one beside it.
+void expect_force_of_the_layer(const nlohmann::json& document, double alpha, double load);
+
 } // namespace boba::calibration
