@@ -90,14 +90,18 @@ void add_rows(json& document, const Solid& solid, const char* setup, const Squee
         u_r[b] += sample[l].u_r[b] / static_cast<double>(squeezed.states.size());
       }
     }
-    json misfit = json::object(), curves = json::object();
+    json misfit = json::object(), curves = json::object(), sway = json::array();
+    for (const auto& sample : squeezed.states) {
+      sway.push_back(sample[l].sway);
+    }
     for (const auto& [model, loads] : continuum.items()) {
       if (l < loads.size()) {
         misfit[model] = profile_misfit(z, u_r, loads[l]["profile"]);
         curves[model] = {{"z", loads[l]["profile"]["z"]}, {"u_r", loads[l]["profile"]["u_r"]}};
       }
     }
-    profiles.push_back({{"load", strain}, {"z", z}, {"u_r", u_r}, {"misfit", misfit}, {"continuum", curves}});
+    profiles.push_back(
+        {{"load", strain}, {"z", z}, {"u_r", u_r}, {"sway", sway}, {"misfit", misfit}, {"continuum", curves}});
   }
   document["cases"].push_back({{"alpha", solid.alpha},
                                {"poisson", solid.constants.poisson()},

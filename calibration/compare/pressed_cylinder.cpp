@@ -96,6 +96,14 @@ CylinderState CylinderPress::measure(const std::vector<Vector3>& position, doubl
     }
   }
   state.poisson = middle_ur / middle_rr / strain;
+  Vector3 apart = Vector3::Zero();
+  for (const int n : upper_) {
+    apart += (position[n] - cylinder_.position[n]) / static_cast<double>(upper_.size());
+  }
+  for (const int n : lower_) {
+    apart -= (position[n] - cylinder_.position[n]) / static_cast<double>(lower_.size());
+  }
+  state.sway = apart.head<2>().norm();
   for (int b = 0; b < bins; ++b) {
     if (nodes[b] > 0) {
       state.z.push_back(z[b] / nodes[b]);

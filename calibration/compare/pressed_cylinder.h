@@ -28,6 +28,7 @@ struct CylinderState {
   double strain = 0.0;        ///< shortening over `height`
   double force = 0.0;         ///< k d, compression positive
   double poisson = 0.0;       ///< radial strain of the side at mid-height over `strain`
+  double sway = 0.0;          ///< how far the end slabs have moved apart across the axis, d: buckling
   double seconds = 0.0;       ///< processor time
   std::vector<double> z, u_r; ///< d: the side's radial displacement against |z|, both halves together
   std::vector<Eigen::Vector3d> position;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/dynamics/simulation.h"
+#include "calibration/network/elastic_constants.h"
+#include "calibration/network/linear_network.h"
+#include "calibration/network/network_stiffness.h"
 #include "calibration/specimen/bulk_cut.h"
+#include "calibration/specimen/nonlinear_network.h"
 #include "tests/calibration/test_boxes.h"
 #include "tests/comparison/comparison_case.h"
 
@@ -111,6 +115,82 @@ TEST(Presses, TheEngineFindsTheStaticForce) {
   const double still = press_sphere(grain, 2.0, rule, {rule.radius - 0.5 * gap}).front().force;
   expect_near(fmt::format("force of the engine at a gap of {:.3f} d against the static one", gap), force, still,
               0.03 * still);
+}
+
+using Field = std::vector<Vector3>;
+
+double dot(const Field& a, const Field& b) {
+  double sum = 0.0;
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    sum += a[n].dot(b[n]);
+  }
+  return sum;
+}
+
+/// a + factor * b
+Field sum_of(Field a, double factor, const Field& b) {
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    a[n] += factor * b[n];
+  }
+  return a;
+}
+
+/// Stiffness against a wave of forces along the bulk's axis: density f / (q^2 u) at rest, longitudinal or transverse.
+double wave_modulus(const GrainTemplate& bulk, const NonlinearNetwork& network, double q, int along, bool sine) {
+  Field force(bulk.n_nodes(), Vector3::Zero());
+  Vector3 mean = Vector3::Zero();
+  for (int n = 0; n < bulk.n_nodes(); ++n) {
+    const double phase = q * bulk.position[n].x();
+    force[n][along] = sine ? std::sin(phase) : std::cos(phase);
+    mean += force[n] / bulk.n_nodes();
+  }
+  for (Vector3& f : force) {
+    f -= mean;
+  }
+  // BiCGStab (van der Vorst, SIAM J. Sci. Stat. Comput. 13 (1992) 631): the many-body term is not symmetric.
+  Field u(force.size(), Vector3::Zero()), r = force, p = force;
+  double rho = dot(force, r);
+  for (int n = 0; n < 3000 && dot(r, r) > 1e-10 * dot(force, force); ++n) {
+    const Field v = network.force_derivative(p); // minus the stiffness
+    const double a = -rho / dot(force, v);
+    const Field s = sum_of(r, a, v), t = network.force_derivative(s);
+    const double w = -dot(t, s) / dot(t, t);
+    u = sum_of(sum_of(u, a, p), w, s);
+    r = sum_of(s, w, t);
+    const double next = dot(force, r), beta = next / rho * a / w;
+    p = sum_of(r, beta, sum_of(p, w, v));
+    rho = next;
+  }
+  return bulk_density(bulk).nodes * dot(force, force) / (q * q * dot(u, force));
+}
+
+/// The many-body force knows the volumes of both its nodes, so it acts over a bond or two, and the longitudinal modulus
+/// depends on the wavelength: what a contact of a few d feels differs from the bulk, upwards for auxetic networks and
+/// downwards otherwise, while the shear modulus falls alike for all alpha. The long wave is the elastic solid's.
+TEST(Network, ItsModuliDependOnTheWavelength) {
+  const GrainTemplate bulk = test_box(4000);
+  const LinearNetwork linear(bulk);
+  for (const double alpha : {-0.8, 0.0, 2.0, 5.0, 12.0}) {
+    const ElasticConstants solid = isotropic_part(relaxed_stiffness(linear, {alpha}).front().stiffness);
+    const NonlinearNetwork network(bulk, alpha);
+    std::vector<double> ratio;
+    for (const int wave : {1, 2}) {
+      for (const int along : {0, 1}) {
+        const double q = 2.0 * M_PI * wave / bulk.period->x();
+        const double modulus =
+            0.5 * (wave_modulus(bulk, network, q, along, true) + wave_modulus(bulk, network, q, along, false));
+        ratio.push_back(modulus / (along == 0 ? solid.bulk + 4.0 / 3.0 * solid.shear : solid.shear));
+      }
+    }
+    fmt::print("alpha = {}: longitudinal modulus over the solid's {:.3f}, {:.3f}; shear {:.3f}, {:.3f} at wavelengths of "
+               "{:.1f} and {:.1f} d\n",
+               alpha, ratio[0], ratio[2], ratio[1], ratio[3], bulk.period->x(), 0.5 * bulk.period->x());
+    std::fflush(stdout);
+    EXPECT_NEAR(ratio[0], 1.0, 0.04);
+    EXPECT_NEAR(ratio[1], 1.0, 0.04);
+    EXPECT_EQ(ratio[2] > 1.0, alpha > 1.0);
+    EXPECT_LT(ratio[3], 1.0);
+  }
 }
 
 } // namespace
