@@ -75,6 +75,8 @@ def picture(file, grid, ours, theirs):
             shown = axis.scatter(side * grid[:, 0], grid[:, 1], c=field, s=10, cmap="RdBu_r", vmin=-limit, vmax=limit, marker="s")
         axis.set_title(f"{name}: particles | continuum", fontsize=9)
         axis.set_aspect("equal")
+        axis.set_xlabel("r / d", fontsize=8)
+        axis.set_ylabel("z / d", fontsize=8)
         figure.colorbar(shown, ax=axis, shrink=0.7)
     figure.savefig(file, dpi=70)
 

@@ -19,15 +19,15 @@ struct ComparisonSettings {
   std::vector<double> alphas;         ///< k d
   GrainTemplate bulk;                 ///< periodic box: calibrated, and bodies are cut from it
   int n_nodes = 5137;                 ///< of a sphere
-  double radius = 7.0, height = 27.0; ///< of a cylinder, slabs of 2 d included, d
+  double radius = 7.0, height = 18.0; ///< of a cylinder, slabs of 2 d included, d; a longer one buckles sideways
   TemplateSpec::Surface surface = TemplateSpec::Surface::cut;
   int samples = 2; ///< bodies, each in a random orientation (and place of the bulk)
   std::uint64_t seed = 1;
   std::vector<double> loads; ///< approach / R of one contact, or strains; rising
   std::vector<Press> presses = {Press::walls};
   std::vector<std::string> models; ///< of a sphere's continuum (docs/formats-calibration.md); empty: all
-  bool fields = false;          ///< write node fields and the continuum's for the last load
-  std::filesystem::path folder; ///< the continuum's results go here
+  bool fields = false;             ///< write node fields and the continuum's for the last load
+  std::filesystem::path folder;    ///< the continuum's results go here
   /// Elastic constants known already (a table); else the bulk is calibrated afresh.
   std::function<std::optional<ElasticConstants>(double alpha)> known;
   std::function<GrainTemplate(const TemplateSpec&)> templates; ///< makes walled grains

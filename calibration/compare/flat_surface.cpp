@@ -16,7 +16,7 @@ namespace {
 constexpr double step = 0.15;           // d, of the gap between two relaxed states
 constexpr double bulk_step = 0.01;      // of the uncut box's stretch
 constexpr double smallest_share = 0.02; // of the largest pressure; below, single nodes carry the load
-constexpr double tolerance = 1e-6; // k d, root mean square residual; pressures to 1e-5
+constexpr double tolerance = 1e-6;      // k d, root mean square residual; pressures to 1e-5
 constexpr double softest_start =
     0.2; // c1 over p/g at the largest overlap: a layer without a slope at rest has no tangent
 

@@ -76,8 +76,9 @@ TEST_P(Resolution, ExtrapolatedTheForceIsTheRigidPlates) {
   }
   const double determinant = w * wxx - wx * wx, limit = (wy * wxx - wxy * wx) / determinant,
                error = std::sqrt(wxx / determinant);
-  expect_near(fmt::format("alpha = {}: force over the rigid plate's for d / R = 0 (standard error {:.3f})", alpha, error),
-              limit, 1.0, 0.05 + error);
+  expect_near(
+      fmt::format("alpha = {}: force over the rigid plate's for d / R = 0 (standard error {:.3f})", alpha, error),
+      limit, 1.0, 0.05 + error);
   EXPECT_LT(levels[0].to_rigid, levels[1].to_rigid);
   EXPECT_LT(levels[1].to_rigid, levels[2].to_rigid);
 }
@@ -182,9 +183,10 @@ TEST(Network, ItsModuliDependOnTheWavelength) {
         ratio.push_back(modulus / (along == 0 ? solid.bulk + 4.0 / 3.0 * solid.shear : solid.shear));
       }
     }
-    fmt::print("alpha = {}: longitudinal modulus over the solid's {:.3f}, {:.3f}; shear {:.3f}, {:.3f} at wavelengths of "
-               "{:.1f} and {:.1f} d\n",
-               alpha, ratio[0], ratio[2], ratio[1], ratio[3], bulk.period->x(), 0.5 * bulk.period->x());
+    fmt::print(
+        "alpha = {}: longitudinal modulus over the solid's {:.3f}, {:.3f}; shear {:.3f}, {:.3f} at wavelengths of "
+        "{:.1f} and {:.1f} d\n",
+        alpha, ratio[0], ratio[2], ratio[1], ratio[3], bulk.period->x(), 0.5 * bulk.period->x());
     std::fflush(stdout);
     EXPECT_NEAR(ratio[0], 1.0, 0.04);
     EXPECT_NEAR(ratio[1], 1.0, 0.04);
