@@ -86,17 +86,22 @@ TEST_P(Resolution, ExtrapolatedTheForceIsTheRigidPlates) {
 INSTANTIATE_TEST_SUITE_P(Alpha, Resolution, ::testing::Values(-0.8, 0.0, 2.0, 5.0, 12.0),
                          [](const auto& test) { return fmt::format("{}", test.index); });
 
-/// Node i and its image touch at the plane between them, as at a wall; some nodes touch a neighbour's image too.
-TEST(Presses, AMirrorImageIsNearlyAWall) {
-  ComparisonSettings settings = comparison_case(0.0, {0.1}, "presses");
+/// Node i and its image touch at the plane between them, as at a wall, as long as no node slips beside its image: at
+/// 0.05 none has, at 0.1 the force may be several percent lower (docs/comparison.md).
+TEST(Presses, AMirrorImageIsAWallUntilNodesSlip) {
+  ComparisonSettings settings = comparison_case(0.0, {0.05, 0.1}, "presses");
   settings.n_nodes = 1000;
   settings.samples = 1;
   settings.presses = {Press::walls, Press::mirror};
+  settings.models = {"linear_layer"};
   const auto document = compare_sphere(settings);
   std::filesystem::remove_all(settings.folder);
-  const double wall = row_of(document, "walls", 0.1, "force")["particles"],
-               mirror = row_of(document, "mirror", 0.1, "force")["particles"];
-  expect_near("force of two mirrored grains against the wall's", mirror, wall, 0.05 * wall);
+  const auto force = [&](const char* press, double load) {
+    return row_of(document, press, load, "force")["particles"].get<double>();
+  };
+  expect_near("force of two mirrored grains against the wall's at 0.05", force("mirror", 0.05), force("walls", 0.05),
+              1e-3 * force("walls", 0.05));
+  expect_near("the same at 0.1", force("mirror", 0.1), force("walls", 0.1), 0.1 * force("walls", 0.1));
 }
 
 /// The engine's walls close on a grain that is free to turn, and rest; the static solver goes to the same gap.
