@@ -19,8 +19,9 @@ const nlohmann::json& row_of(const nlohmann::json& document, const std::string& 
 void expect_near(const std::string& what, double measured, double reference, double tolerance);
 
 /// Expects the mean force of the bodies within 5 % and their standard error of the finite-strain continuum with the
-/// layer; prints the neo-Hookean one beside it. At alpha = 12 ten percent: the most auxetic network stiffens on short
-/// waves, which at 5137 nodes is 7 to 10 % of a contact's force and falls with d / R (docs/comparison.md).
+/// layer; prints the neo-Hookean one beside it. At alpha = 12 ten and
+/// at 5 seven percent: auxetic networks stiffen on short waves, which at 5137 nodes is 7 to 10 % and 3 to 6 % of a
+/// contact's force and falls with d / R (docs/comparison.md).
 void expect_force_of_the_layer(const nlohmann::json& document, double alpha, double load);
 
 } // namespace boba::calibration
