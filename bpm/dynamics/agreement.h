@@ -8,7 +8,8 @@
 namespace boba {
 
 /// What the ranks tell each other once a step, all in one reduction while the drift is looked at: the largest speeds, a
-/// wish to stop, rank 0's clock. Decisions that depend on time or signals are made from these, so that all make the same.
+/// wish to stop, rank 0's clock. Decisions that depend on time or signals are made from these, so that all make the
+/// same.
 class Agreement {
 public:
   explicit Agreement(const Ranks& ranks) : ranks_(ranks) {}

@@ -3,12 +3,11 @@
 
 #include "bpm/dynamics/blow_up.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <omp.h>
 
 namespace boba {
 
@@ -19,7 +18,8 @@ constexpr std::int64_t recentre_interval = 64;
 constexpr double largest_range_share = 0.45;
 /// Kinetic energy of full steps over that of half steps below which velocities change sign from step to step.
 constexpr double least_smoothness = 0.25;
-/// d a step, root mean square over a block. Below it a few nodes at most may do that, at the ends of a bond that collapsed.
+/// d a step, root mean square over a block. Below it a few nodes at most may do that, at the ends of a bond that
+/// collapsed.
 constexpr double least_motion = 3e-3;
 
 std::vector<Vector3> fractional_centres(const Packing& packing) {
@@ -48,8 +48,11 @@ Distribution first_distribution(const Packing& packing, const SimulationOptions&
     return {};
   }
   const std::vector<int> n_nodes = nodes_of_grains(packing);
-  const PlacementInput input = {&packing, options.ranks->size(), lanes_of_block(options.precision),
-                                fractional_centres(packing), {n_nodes.begin(), n_nodes.end()}};
+  const PlacementInput input = {&packing,
+                                options.ranks->size(),
+                                lanes_of_block(options.precision),
+                                fractional_centres(packing),
+                                {n_nodes.begin(), n_nodes.end()}};
   return {options.ranks, Ownership(place_grains(input), options.ranks->size(), n_nodes)};
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nodes that a contact list follows by themselves. One node in a thousand, loosely bonded at a surface, moves several
-// times farther in a step than the rest. Were it to count as all do, the list would have to be brought up to date several
-// times as often: these nodes are looked up from where they are, with all of the reach, and have a bound of their own.
+// times farther in a step than the rest. Were it to count as all do, the list would have to be brought up to date
+// several times as often: these nodes are looked up from where they are, with all of the reach, and have a bound of
+// their own.
 #include "bpm/forces/contact_list.h"
 #include "bpm/forces/node_pairs.h"
 
@@ -28,12 +29,15 @@ std::size_t most_followed(int n_nodes) {
 
 } // namespace
 
-bool ContactList::note_brisk(int g, std::int32_t node) {
+bool ContactList::follows(int grain, std::int32_t node) const {
+  return std::binary_search(grains_[grain].followed.begin(), grains_[grain].followed.end(), node);
+}
+
+void ContactList::note_brisk(int g, std::int32_t node) {
   TrackedGrain& grain = grains_[g];
   if (grain.brisk.size() < records_per_node * (most_followed(layout_.n_nodes(g)) + 1)) {
     grain.brisk.push_back(node);
   }
-  return std::binary_search(grain.followed.begin(), grain.followed.end(), node);
 }
 
 /// Chooses the nodes of a grain that are followed until the next update, and finds out where they are.
@@ -44,8 +48,7 @@ void ContactList::follow(int g, const LaneState& state) {
   std::vector<std::int32_t> nodes = grain.brisk;
   std::vector<int> left(nodes.size(), updates_followed);
   for (std::size_t k = 0; k < grain.followed.size(); ++k) {
-    if (grain.updates_left[k] > 1 &&
-        !std::binary_search(grain.brisk.begin(), grain.brisk.end(), grain.followed[k])) {
+    if (grain.updates_left[k] > 1 && !std::binary_search(grain.brisk.begin(), grain.brisk.end(), grain.followed[k])) {
       const auto at = std::lower_bound(nodes.begin(), nodes.end(), grain.followed[k]);
       left.insert(left.begin() + (at - nodes.begin()), grain.updates_left[k] - 1);
       nodes.insert(at, grain.followed[k]);
@@ -81,8 +84,8 @@ void ContactList::choose_brisk_motion() {
   }
 }
 
-/// Distance that followed nodes keep from all that they are not listed with: they were looked up from where they are with
-/// the whole reach, and others may stray from their places.
+/// Distance that followed nodes keep from all that they are not listed with: they were looked up from where they are
+/// with the whole reach, and others may stray from their places.
 double ContactList::followed_guarantee() const {
   double stray = 0.0;
   for (const TrackedGrain& grain : grains_) {

@@ -10,8 +10,8 @@ namespace boba {
 
 namespace {
 
-/// What a rank must know of a grain that it does not own. Its owner's records of places: first those of nodes that moved,
-/// then of those that are followed by themselves, then, where somebody needs them, all.
+/// What a rank must know of a grain that it does not own. Its owner's records of places: first those of nodes that
+/// moved, then of those that are followed by themselves, then, where somebody needs them, all.
 struct GhostRecord {
   GrainFrame frame;
   Bounds bounds;

@@ -13,8 +13,9 @@
 
 namespace boba {
 
-/// Copies of other ranks' nodes that may touch ours, positions and velocities: all that stand in a candidate of this rank
-/// while the list is brought up to date, and between updates those that may touch before the next. Rebuilt with the list.
+/// Copies of other ranks' nodes that may touch ours, positions and velocities: all that stand in a candidate of this
+/// rank while the list is brought up to date, and between updates those that may touch before the next. Rebuilt with
+/// the list.
 class ContactHalo {
 public:
   enum class Nodes { listed, near };
@@ -44,7 +45,7 @@ private:
   std::unique_ptr<StarForest> forest_;
   StarForest::Traffic each_;
   std::vector<int> ghosts_;
-  std::vector<std::int64_t> first_node_;           ///< per grain, of the ghosts alone
+  std::vector<std::int64_t> first_node_;          ///< per grain, of the ghosts alone
   std::unique_ptr<kernels::ContactNode[]> nodes_; ///< of whole ghosts; only pages with listed nodes are ever touched
   std::int64_t n_nodes_ = 0;
   std::vector<std::vector<std::int32_t>> listed_, near_; ///< per grain

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pairs of grains: which there are, what they list, how long that lasts. Grains are followed in contact_tracking.cpp.
 #include "bpm/forces/contact_list.h"
+
 #include "bpm/forces/node_pairs.h"
 
 #include <algorithm>

@@ -44,9 +44,10 @@ public:
   void note_motion(const Matrix3& cell_map, double farthest, double common);
   /// What a node may move in a step before the list wants to hear of it, d.
   double brisk_motion() const { return brisk_motion_; }
-  /// Tells the list of a node that moves farther than that in a step; true when the node is followed, so that it does not
-  /// count for note_motion's `common`. Different grains may be told of by different threads.
-  bool note_brisk(int grain, std::int32_t node);
+  /// True when a node is followed, so that it does not count for note_motion's `common`.
+  bool follows(int grain, std::int32_t node) const;
+  /// Tells the list of a node that moves farther than that in a step.
+  void note_brisk(int grain, std::int32_t node);
   /// The cell's vectors or the state changed in a way that note_motion was not told of.
   void invalidate() { built_ = false; }
   /// The same, and the layout holds other grains than before.
@@ -167,15 +168,15 @@ private:
   double crept_ = 0.0;          ///< bound on a node's motion since then beyond the cell's, d, but for followed ones
   double crept_followed_ = 0.0; ///< the same of any node
   double brisk_motion_;         ///< d a step
-  AlignedArray<float> place_; ///< X, lane layout, d
+  AlignedArray<float> place_;   ///< X, lane layout, d
   std::vector<TrackedGrain> grains_;
   std::vector<ContactPair> pairs_; ///< sorted by a, b, image
   std::vector<std::vector<ContactSide>> sides_;
   const Distribution& distribution_;
   std::vector<int> ghosts_;
-  std::vector<std::uint8_t> fresh_;           ///< per ghost: nothing of it is known yet
-  std::vector<std::uint8_t> wanted_;          ///< per own grain: some rank knows nothing of it yet
-  std::unique_ptr<StarForest> ghost_forest_;  ///< own grains to ghosts
+  std::vector<std::uint8_t> fresh_;          ///< per ghost: nothing of it is known yet
+  std::vector<std::uint8_t> wanted_;         ///< per own grain: some rank knows nothing of it yet
+  std::unique_ptr<StarForest> ghost_forest_; ///< own grains to ghosts
   Counts counts_;
 };
 

@@ -139,8 +139,8 @@ void add_pairs_between(const GrainGrid& a, const GrainGrid& b, const GrainFrame&
 
 namespace {
 
-/// Where the partners of the node at place `at` of cell (x, y, z) are, among the half of the surrounding cells that come
-/// later: the rest of its row, and the rows after.
+/// Where the partners of the node at place `at` of cell (x, y, z) are, among the half of the surrounding cells that
+/// come later: the rest of its row, and the rows after.
 void add_later_rows(const GrainGrid& grid, std::int32_t at, int x, int y, int z, NearPlaces& near) {
   const int left = std::max(x - 1, 0), right = std::min(x + 2, grid.cells(0));
   near.add_row(at + 1, grid.begin(right, y, z));

@@ -48,14 +48,6 @@ void ForceField::contacts_between(ContactPair& pair, const Box& box, const Evalu
   pair.touches.assign(touches.begin(), touches.begin() + n_touching);
 }
 
-void ForceField::collect(int b, const LaneState& state) {
-  for (const int grain : layout_.blocks()[b].grain) {
-    if (grain >= 0) {
-      collect(grain, listed(grain), state);
-    }
-  }
-}
-
 void ForceField::collect(int grain, std::span<const std::int32_t> nodes, const LaneState& state) {
   state.visit([&](const auto& lanes) {
     kernels_of(table_, lanes)
@@ -75,8 +67,8 @@ void ForceField::prepare_contacts(const LaneState& state, const Box& box) {
     know_nodes();
   }
 #pragma omp parallel for schedule(dynamic, 1)
-  for (int b = 0; b < static_cast<int>(layout_.blocks().size()); ++b) {
-    collect(b, state);
+  for (const int grain : layout_.grains()) {
+    collect(grain, listed(grain), state);
   }
   if (changed) {
     list_near(box);

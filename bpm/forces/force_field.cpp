@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/forces/force_field.h"
 
-#include "bpm/forces/image_bonds.h"
+#include "bpm/forces/block_pieces.h"
 #include "bpm/forces/lane_kernels.h"
 
 #include <algorithm>
@@ -54,120 +54,9 @@ void ForceField::layout_changed() {
   collected_ = false;
 }
 
-template <class Coordinate, class Real>
-void ForceField::add_contacts(int grain, const kernels::LaneKernels<Coordinate, Real>& lane_kernels, Real* f,
-                              bool with_sums) {
-  kernels::ContactSums& sums = results_.contacts[grain];
-  if (with_sums) {
-    sums = no_contacts;
-  }
-  for (const ContactSide& side : contact_list_.sides(grain)) {
-    const ContactPair& pair = contact_list_.pairs()[side.pair];
-    lane_kernels.add_touches(pair.touches.data(), static_cast<std::int64_t>(pair.touches.size()), side.sign, f,
-                             layout_.stride(grain));
-    if (with_sums && !pair.touches.empty()) {
-      for (int c = 0; c < 6; ++c) {
-        sums.virial[c] += 0.5 * pair.sums.virial[c];
-      }
-      sums.smallest_r2 = std::min(sums.smallest_r2, pair.sums.smallest_r2);
-      sums.potential += 0.5 * pair.sums.potential;
-      sums.n_touching += pair.sums.n_touching;
-    }
-  }
-}
-
-template <class Real>
-void ForceField::walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums) {
-  const Block& block = layout_.blocks()[b];
-  for (int lane = 0; lane < block.n_lanes; ++lane) {
-    const int grain = block.grain[lane];
-    if (grain >= 0) {
-      const auto add = [&](int node, const Vector3& force) {
-        for (int c = 0; c < 3; ++c) {
-          f[(3 * static_cast<std::int64_t>(node) + c) * block.n_lanes + lane] += static_cast<Real>(force[c]);
-        }
-      };
-      wall_forces_[wall][grain] =
-          add_wall_forces(walls_[wall], material_, layout_, grain, state, add, with_sums, results_.contacts[grain]);
-    }
-  }
-}
-
-template <class Coordinate, class Real>
-void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>& lanes, const Box& box,
-                          const Evaluation& what) {
-  // Scratch of one thread for all blocks: it stays in the cache, and memory is not asked for forces at all.
-  thread_local AlignedArray<Real> volume, force;
-  const Block& block = layout_.blocks()[b];
-  const NetworkData& network = networks_[block.template_index];
-  const kernels::LaneKernels<Coordinate, Real>& lane_kernels = kernels_of(table_, lanes);
-  const Matrix3 residual = what.residual_rate * box.h_inverse();
-  const Vector3 residual_x = residual.row(0);
-  const kernels::BondParameters parameters = {material_.k,
-                                              material_.gamma,
-                                              what.kick / material_.node_mass,
-                                              what.half_kick / material_.node_mass,
-                                              material_.node_mass,
-                                              {residual_x[0], residual_x[1], residual_x[2]}};
-  const auto n_lane_nodes = static_cast<std::size_t>(block.n_nodes) * block.n_lanes;
-  if (block.many_body) {
-    volume.assign(n_lane_nodes, 0);
-  }
-  force.assign(3 * n_lane_nodes, 0);
-  double residual_shift[max_lanes] = {};
-  for (int lane = 0; lane < block.n_lanes; ++lane) {
-    const int grain = block.grain[lane];
-    if (grain >= 0) {
-      add_contacts(grain, lane_kernels, force.data() + lane, what.virial != Virial::none);
-      residual_shift[lane] = residual_x.dot(state.origin(grain) - box.origin());
-    }
-  }
-  for (std::size_t w = 0; w < walls_.size(); ++w) {
-    walls_on(b, state, w, force.data(), what.virial != Virial::none);
-  }
-  kernels::BlockArraysOf<Coordinate, Real> arrays = {lanes.x.data() + block.offset,
-                                                     lanes.v.data() + block.offset,
-                                                     force.data(),
-                                                     volume.data(),
-                                                     block.alpha.data(),
-                                                     residual_shift,
-                                                     state.quantum(),
-                                                     block.n_lanes};
-  kernels::LaneSums sums;
-  ImageBondSums image_sums{};
-  if constexpr (std::is_same_v<Real, double>) { // the constructor refuses them in mixed precision
-    if (!network.image_bonds().empty()) {
-      image_sums = add_image_bonds(network, material_, box, what.residual_rate, block.many_body, arrays);
-    }
-  }
-  lane_kernels.bonds(network.view_as<Real>(), arrays, parameters, block.many_body, what.virial, sums);
-  if (what.keep_forces) {
-    std::copy(force.begin(), force.end(), lanes.f.begin() + block.offset);
-  }
-  if (what.virial == Virial::none) {
-    return;
-  }
-  for (int lane = 0; lane < block.n_lanes; ++lane) {
-    if (block.grain[lane] < 0) {
-      continue;
-    }
-    GrainSums& grain = results_.grains[block.grain[lane]];
-    const kernels::ContactSums& contact = results_.contacts[block.grain[lane]];
-    for (int c = 0; c < 6; ++c) {
-      grain.virial[c] = sums.virial[c][lane] + contact.virial[c] + image_sums.virial[c][lane];
-      grain.kinetic[c] = sums.kinetic[c][lane];
-    }
-    const double elsewhere = contact.virial[0] + contact.virial[1] + contact.virial[2] + image_sums.virial[0][lane] +
-                             image_sums.virial[1][lane] + image_sums.virial[2][lane];
-    grain.virial_trace = sums.virial[6][lane] + elsewhere;
-    grain.kinetic_trace = sums.kinetic[6][lane];
-  }
-}
-
-/// Tells the contact list of nodes that move far; returns the largest speed^2 of those that it does not follow.
-double ForceField::note_brisk(const Block& block, std::span<const std::int32_t> nodes, const LaneState& state,
-                              const kernels::Drift& drift) {
-  double largest2 = 0.0;
+/// Finds out which of these nodes move far; notes the largest speed^2 of those that the contact list does not follow.
+void ForceField::see_brisk(const Block& block, std::span<const std::int32_t> nodes, const LaneState& state,
+                           const kernels::Drift& drift, Drifted& drifted) const {
   for (const std::int32_t node : nodes) {
     for (int lane = 0; lane < block.n_lanes; ++lane) {
       const int grain = block.grain[lane];
@@ -179,33 +68,42 @@ double ForceField::note_brisk(const Block& block, std::span<const std::int32_t> 
         u[0] -= Vector3(drift.residual[0], drift.residual[1], drift.residual[2]).dot(state.position(grain, node)) +
                 drift.residual_shift;
       }
-      if (const double speed2 = u.squaredNorm(); speed2 > drift.brisk_speed2 && !contact_list_.note_brisk(grain, node)) {
-        largest2 = std::max(largest2, speed2);
+      if (const double speed2 = u.squaredNorm(); speed2 > drift.brisk_speed2) {
+        drifted.brisk.push_back({grain, node});
+        if (!contact_list_.follows(grain, node)) {
+          drifted.motion.common_speed2 = std::max(drifted.motion.common_speed2, speed2);
+        }
       }
     }
   }
-  return largest2;
 }
 
-BlockMotion ForceField::drift_block(int b, LaneState& state, kernels::Drift drift) {
-  const Block& block = layout_.blocks()[b];
+/// Moves the nodes [begin, end) of a block.
+ForceField::Drifted ForceField::drift_nodes(const Block& block, int begin, int end, LaneState& state,
+                                            kernels::Drift drift) {
   const Vector3 residual(drift.residual[0], drift.residual[1], drift.residual[2]);
   for (int lane = 0; lane < block.n_lanes; ++lane) {
     drift.lane_shift[lane] =
         drift.residual_shift + (block.grain[lane] >= 0 ? residual.dot(state.origin(block.grain[lane])) : 0.0);
   }
   std::array<std::size_t, max_lanes> collected{};
+  for (int lane = 0; lane < block.n_lanes; ++lane) {
+    if (const int grain = block.grain[lane]; grain >= 0) {
+      collected[lane] = std::lower_bound(near(grain).begin(), near(grain).end(), begin) - near(grain).begin();
+    }
+  }
   std::array<std::int32_t, static_cast<std::size_t>(drift_chunk) * max_lanes> brisk;
   drift.brisk = brisk.data();
   drift.brisk_speed2 = std::pow(contact_list_.brisk_motion() / drift.dt, 2);
-  BlockMotion motion;
-  for (int node = 0; node < block.n_nodes; node += drift_chunk) {
-    const int end = std::min(node + drift_chunk, block.n_nodes);
+  Drifted drifted;
+  BlockMotion& motion = drifted.motion;
+  for (int node = begin; node < end; node += drift_chunk) {
+    const int chunk_end = std::min(node + drift_chunk, end);
     const std::int64_t first = block.offset + 3 * static_cast<std::int64_t>(node) * block.n_lanes;
     drift.first_node = node;
     const kernels::DriftResult part = state.visit([&](auto& lanes) {
       return kernels_of(table_, lanes)
-          .drift(lanes.x.data() + first, lanes.v.data() + first, end - node, block.n_lanes, drift);
+          .drift(lanes.x.data() + first, lanes.v.data() + first, chunk_end - node, block.n_lanes, drift);
     });
     motion.largest_speed2 = std::max(motion.largest_speed2, part.largest_speed2);
     motion.common_speed2 = std::max(motion.common_speed2, std::min(part.largest_speed2, drift.brisk_speed2));
@@ -213,30 +111,45 @@ BlockMotion ForceField::drift_block(int b, LaneState& state, kernels::Drift drif
     for (std::int32_t& found : std::span(brisk).first(part.n_brisk)) {
       found += node;
     }
-    motion.common_speed2 =
-        std::max(motion.common_speed2, note_brisk(block, std::span(brisk).first(part.n_brisk), state, drift));
+    see_brisk(block, std::span(brisk).first(part.n_brisk), state, drift, drifted);
     for (int lane = 0; lane < block.n_lanes; ++lane) {
       const int grain = block.grain[lane];
       if (grain >= 0) {
         const std::span<const std::int32_t> nodes = near(grain);
         const std::size_t from = collected[lane];
-        while (collected[lane] < nodes.size() && nodes[collected[lane]] < end) {
+        while (collected[lane] < nodes.size() && nodes[collected[lane]] < chunk_end) {
           ++collected[lane];
         }
         collect(grain, nodes.subspan(from, collected[lane] - from), state);
       }
     }
   }
-  return motion;
+  return drifted;
 }
 
 std::vector<BlockMotion> ForceField::drift(LaneState& state, kernels::Drift drift) {
   drift.quantum = state.quantum();
   const int n_blocks = static_cast<int>(layout_.blocks().size());
+  const int n_pieces = pieces_of(n_blocks, omp_get_max_threads());
+  std::vector<Drifted> drifted(static_cast<std::size_t>(n_blocks) * n_pieces);
+  // With blocks in pieces as in split_bonds_of; whole blocks go to whoever is free.
+  omp_set_schedule(n_pieces > 1 ? omp_sched_static : omp_sched_dynamic, 1);
+#pragma omp parallel for schedule(runtime)
+  for (int task = 0; task < n_blocks * n_pieces; ++task) {
+    const Block& block = layout_.blocks()[task / n_pieces];
+    drifted[task] = drift_nodes(block, piece_begin(block.n_nodes, n_pieces, task % n_pieces),
+                                piece_begin(block.n_nodes, n_pieces, task % n_pieces + 1), state, drift);
+  }
   std::vector<BlockMotion> results(n_blocks);
-#pragma omp parallel for schedule(dynamic, 1)
-  for (int b = 0; b < n_blocks; ++b) {
-    results[b] = drift_block(b, state, drift);
+  for (int task = 0; task < n_blocks * n_pieces; ++task) {
+    BlockMotion& result = results[task / n_pieces];
+    const BlockMotion& motion = drifted[task].motion;
+    result.largest_speed2 = std::max(result.largest_speed2, motion.largest_speed2);
+    result.common_speed2 = std::max(result.common_speed2, motion.common_speed2);
+    result.checksum += motion.checksum;
+    for (const auto& [grain, node] : drifted[task].brisk) {
+      contact_list_.note_brisk(grain, node);
+    }
   }
   collected_ = true;
   return results;
@@ -245,6 +158,8 @@ std::vector<BlockMotion> ForceField::drift(LaneState& state, kernels::Drift drif
 void ForceField::evaluate_part(const Part& part, LaneState& state, const Box& box, const Evaluation& what) {
   const double start = omp_get_wtime();
   double kicked = start;
+  const int n_pieces = pieces_of(static_cast<int>(part.blocks.size()), omp_get_max_threads());
+  const bool split = n_pieces > 1 && can_split(part.blocks);
 #pragma omp parallel
   {
 #pragma omp for schedule(dynamic, 4)
@@ -253,10 +168,15 @@ void ForceField::evaluate_part(const Part& part, LaneState& state, const Box& bo
     }
 #pragma omp master
     kicked = omp_get_wtime();
+    if (!split) {
 #pragma omp for schedule(dynamic, 1)
-    for (const int b : part.blocks) {
-      state.visit([&](auto& lanes) { bonds_of(b, state, lanes, box, what); });
+      for (const int b : part.blocks) {
+        state.visit([&](auto& lanes) { bonds_of(b, state, lanes, box, what); });
+      }
     }
+  }
+  if (split) {
+    state.visit([&](auto& lanes) { split_bonds_of(part.blocks, n_pieces, state, lanes, box, what); });
   }
   contact_seconds += kicked - start;
   bond_seconds += omp_get_wtime() - kicked;
@@ -326,7 +246,8 @@ void ForceField::volumes_only(LaneState& state) const {
         kernels_of(table_, lanes)
             .volumes(networks_[block.template_index].view_as<typename Arrays::Real>(),
                      {lanes.x.data() + block.offset, nullptr, nullptr, volume.data(), nullptr, nullptr, state.quantum(),
-                      block.n_lanes});
+                      block.n_lanes},
+                     {0, block.n_nodes, block.n_nodes});
       }
     }
   });

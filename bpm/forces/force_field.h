@@ -3,6 +3,7 @@
 
 #include "bpm/forces/contact_halo.h"
 #include "bpm/forces/contact_list.h"
+#include "bpm/forces/image_bonds.h"
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/forces/network_data.h"
 #include "bpm/forces/wall.h"
@@ -67,8 +68,8 @@ public:
 
   /// Moves all nodes; per block, what the drift saw.
   std::vector<BlockMotion> drift(LaneState& state, kernels::Drift drift);
-  /// Rebuilds the contact list when it must, and evaluates. The sums of every grain are then known to this rank for its own
-  /// grains (where asked for); `share_sums` tells all ranks.
+  /// Rebuilds the contact list when it must, and evaluates. The sums of every grain are then known to this rank for its
+  /// own grains (where asked for); `share_sums` tells all ranks.
   void evaluate(LaneState& state, const Box& box, const Evaluation& what);
 
   /// Gives all ranks the traces of all grains (Virial::trace), or everything (Virial::full). Collective.
@@ -111,11 +112,19 @@ public:
 
 private:
   void prepare_contacts(const LaneState& state, const Box& box);
-  void collect(int b, const LaneState& state);
   void collect(int grain, std::span<const std::int32_t> nodes, const LaneState& state);
-  BlockMotion drift_block(int b, LaneState& state, kernels::Drift drift);
-  double note_brisk(const Block& block, std::span<const std::int32_t> nodes, const LaneState& state,
-                    const kernels::Drift& drift);
+  struct GrainNode {
+    int grain;
+    std::int32_t node;
+  };
+  /// What the drift of some nodes of a block saw.
+  struct Drifted {
+    BlockMotion motion;
+    std::vector<GrainNode> brisk; ///< nodes that move far
+  };
+  Drifted drift_nodes(const Block& block, int begin, int end, LaneState& state, kernels::Drift drift);
+  void see_brisk(const Block& block, std::span<const std::int32_t> nodes, const LaneState& state,
+                 const kernels::Drift& drift, Drifted& drifted) const;
   template <class Real> void walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums);
   kernels::ContactCandidates seen_by_kernels(const ContactPair& pair, const std::vector<kernels::NodePair>& pairs,
                                              const Box& box, const Matrix3& residual_rate) const;
@@ -124,8 +133,31 @@ private:
   void contacts_between(ContactPair& pair, const Box& box, const Evaluation& what);
   template <class Coordinate, class Real>
   void add_contacts(int grain, const kernels::LaneKernels<Coordinate, Real>& lane_kernels, Real* f, bool with_sums);
+
+  // field_bonds.cpp
+  /// What the passes over a block's bonds share; arrays.f holds contacts and walls before the bonds come.
+  template <class Coordinate, class Real> struct BondPass {
+    const Block* block;
+    const NetworkData* network;
+    kernels::BlockArraysOf<Coordinate, Real> arrays;
+    std::array<double, max_lanes> residual_shift;
+    kernels::BondParameters parameters;
+    std::vector<kernels::LaneSums> sums; ///< of each segment
+  };
+  template <class Coordinate, class Real>
+  BondPass<Coordinate, Real> bond_pass(int b, LaneState& state, LaneArrays<Coordinate, Real>& lanes, const Box& box,
+                                       const Evaluation& what) const;
+  template <class Coordinate, class Real>
+  void add_others(int b, const LaneState& state, const LaneArrays<Coordinate, Real>& lanes, Real* f,
+                  const Evaluation& what);
   template <class Coordinate, class Real>
   void bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>& lanes, const Box& box, const Evaluation& what);
+  template <class Coordinate, class Real>
+  void split_bonds_of(const std::vector<int>& blocks, int n_pieces, LaneState& state,
+                      LaneArrays<Coordinate, Real>& lanes, const Box& box, const Evaluation& what);
+  void sum_up(const Block& block, std::span<const kernels::LaneSums> sums, const ImageBondSums& image_sums);
+  bool can_split(const std::vector<int>& blocks) const;
+
   /// Part of the pairs and blocks: those that need no other rank, and the rest.
   struct Part {
     std::vector<int> pairs, blocks;
@@ -153,7 +185,7 @@ private:
   Results results_;
   const Distribution& distribution_;
   ContactHalo halo_;
-  Part own_part_, shared_part_; ///< without and with grains of other ranks
+  Part own_part_, shared_part_;                           ///< without and with grains of other ranks
   std::vector<std::int64_t> first_node_;                  ///< per grain, in contact_nodes_
   std::unique_ptr<kernels::ContactNode[]> contact_nodes_; ///< of all nodes, kept up to date for those that are listed
   bool collected_ = false;                                ///< contact nodes are those of the present positions

@@ -14,8 +14,8 @@
 namespace boba {
 
 /// All nodes of one grain in cubic cells of edge `reach` over its bounds, sorted by cell with x running fastest, so
-/// that the cells of a row are one run of nodes. No assumption is made on which nodes are at the surface. Coordinates are
-/// kept as floats.
+/// that the cells of a row are one run of nodes. No assumption is made on which nodes are at the surface. Coordinates
+/// are kept as floats.
 class GrainGrid {
 public:
   GrainGrid() = default;

@@ -10,7 +10,7 @@ namespace boba {
 
 /// Virial of the bonds across the boundary, per lane, as xx yy zz xy xz yz.
 struct ImageBondSums {
-  double virial[6][8];
+  double virial[6][max_lanes];
 };
 
 /// Adds the forces of the bonds of a periodic template that cross the boundary. They are a small share of a

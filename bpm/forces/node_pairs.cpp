@@ -58,9 +58,8 @@ void sort_pairs(std::vector<NodePair>& pairs, std::int32_t n_first) {
 void insert_pairs(std::vector<NodePair>& sorted, std::vector<NodePair>& added) {
   std::sort(added.begin(), added.end(), before);
   added.erase(std::unique(added.begin(), added.end()), added.end());
-  std::erase_if(added, [&](const NodePair& pair) {
-    return std::binary_search(sorted.begin(), sorted.end(), pair, before);
-  });
+  std::erase_if(added,
+                [&](const NodePair& pair) { return std::binary_search(sorted.begin(), sorted.end(), pair, before); });
   // From the back: each of what is there moves once, and no memory is asked for but the list's own.
   auto old = static_cast<std::ptrdiff_t>(sorted.size()) - 1;
   sorted.resize(sorted.size() + added.size());

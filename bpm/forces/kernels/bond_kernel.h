@@ -13,9 +13,17 @@ using boba::kernels::BondParameters;
 using boba::kernels::BondRecordOf;
 using boba::kernels::LaneSums;
 using boba::kernels::NetworkOf;
+using boba::kernels::NodeRange;
 using boba::kernels::Virial;
 
 template <class V> struct Triple { V c[3]; };
+
+struct Yes {
+  static constexpr bool value = true;
+};
+struct No {
+  static constexpr bool value = false;
+};
 
 template <class V, class T> inline Triple<V> load3(const T* from, std::int64_t node, std::int64_t stride) {
   const T* at = from + 3 * node * stride;
@@ -39,11 +47,11 @@ template <class V> inline V dot(const Triple<V>& a, const Triple<V>& b) {
   return multiply_add(a.c[2], b.c[2], multiply_add(a.c[1], b.c[1], a.c[0] * b.c[0]));
 }
 
-/// Adds r^3 of the bonds of the nodes [begin, end) to the volumes of both of their nodes. Pointers start at the first
-/// lane.
-template <class S, class Coordinate = typename S::Coordinate, class Real = typename S::Real>
+/// Adds r^3 of the bonds of the nodes [begin, end) to the volumes of both of their nodes, but not to nodes from own_end
+/// on. Pointers start at the first lane.
+template <class S, bool shared, class Coordinate = typename S::Coordinate, class Real = typename S::Real>
 void node_volumes(const NetworkOf<Real>& network, const Coordinate* x, Real* volume, double quantum, std::int64_t begin,
-                  std::int64_t end) {
+                  std::int64_t end, std::int64_t own_end) {
   using V = typename S::V;
   using P = typename S::P;
   constexpr std::int64_t stride = S::stride;
@@ -57,16 +65,52 @@ void node_volumes(const NetworkOf<Real>& network, const Coordinate* x, Real* vol
       const V r2 = dot(d, d);
       const V cube = r2 * r2 * inverse_sqrt(r2);
       sum += cube;
-      store<V>(volume + j * stride, load<V>(volume + j * stride) + cube);
+      if (!shared || j < own_end) {
+        store<V>(volume + j * stride, load<V>(volume + j * stride) + cube);
+      }
     }
     store<V>(volume + i * stride, sum);
   }
 }
 
+/// Calls visit(i, b) for the bonds b of nodes i before a range that join a node of the range.
+template <class Real, class Visit>
+inline void for_each_bond_from_before(const NetworkOf<Real>& network, const NodeRange& range, Visit&& visit) {
+  std::int64_t first = 0; // the first node with a bond that reaches the range, or later ones
+  for (std::int64_t last = range.begin; first < last;) {
+    const std::int64_t middle = (first + last) / 2;
+    if (network.reach[middle] > range.begin) {
+      last = middle;
+    } else {
+      first = middle + 1;
+    }
+  }
+  for (std::int64_t i = first; i < range.begin; ++i) {
+    for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
+      if (network.bonds[b].other >= range.begin && network.bonds[b].other < range.end) {
+        visit(i, b);
+      }
+    }
+  }
+}
+
 template <class Coordinate, class Real>
-void volumes_of_nodes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a) {
+void volumes_of_nodes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a,
+                      const NodeRange& range) {
   for_lanes<Coordinate>(a.n_lanes, [&](int lane, auto storage) {
-    node_volumes<decltype(storage)>(network, a.x + lane, a.volume + lane, a.quantum, 0, network.n_nodes);
+    using S = decltype(storage);
+    using V = typename S::V;
+    const Coordinate* x = a.x + lane;
+    Real* volume = a.volume + lane;
+    for_each_bond_from_before(network, range, [&](std::int64_t i, std::int64_t b) {
+      const std::int64_t j = network.bonds[b].other;
+      const Triple<V> d = separation<S>(load3<typename S::P>(x, i, S::stride), load3<typename S::P>(x, j, S::stride),
+                                        splat<V>(a.quantum));
+      const V r2 = dot(d, d);
+      const V cube = r2 * r2 * inverse_sqrt(r2);
+      store<V>(volume + j * S::stride, load<V>(volume + j * S::stride) + cube);
+    });
+    node_volumes<S, true>(network, x, volume, a.quantum, range.begin, range.end, range.own_end);
   });
 }
 
@@ -108,17 +152,39 @@ template <class D> void store_tensor(const Tensor<D>& sum, double (*to)[boba::ma
   }
 }
 
-/// One pass over the nodes. A node's force is complete when its own bonds are done, since bonds to earlier nodes were
-/// added when those were visited; nobody needs its velocity any more, so it is kicked on the spot.
-template <class S, bool many_body, bool damped, Virial virial, class Coordinate = typename S::Coordinate,
+/// Force over distance of one bond; d and r2 are its separation.
+template <bool many_body, bool damped, class V, class Real>
+inline V bond_scale(const BondRecordOf<Real>& bond, const Triple<V>& d, V r2, const Triple<V>& vi, const Triple<V>& vj,
+                    V volumes, V alpha, Real k, Real gamma) {
+  const V inverse_r = inverse_sqrt(r2);
+  const V r = r2 * inverse_r;
+  V normal_velocity{};
+  if constexpr (damped) {
+    normal_velocity = dot(d, difference(vi, vj)) * inverse_r;
+  }
+  V force;
+  if constexpr (many_body) {
+    const V ratio = volumes * bond.inverse_volume;
+    force = boba::bond_force(k, alpha, gamma, r, bond.r0, bond.inverse_r0, cube_root(ratio), normal_velocity);
+  } else {
+    force = boba::bond_force_pairwise(k, gamma, r, bond.r0, normal_velocity);
+  }
+  return force * inverse_r;
+}
+
+/// One pass over a range of nodes. A node's force is complete when its own bonds are done, since bonds to earlier nodes
+/// were added when those were visited; nobody needs its velocity any more, so it is kicked on the spot. `shared`: other
+/// threads deal with the nodes from own_end on.
+template <class S, bool many_body, bool damped, bool shared, Virial virial, class Coordinate = typename S::Coordinate,
           class Real = typename S::Real>
 void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a, const BondParameters& p,
-                int lane, LaneSums& sums) {
+                int lane, const NodeRange& range, std::int64_t& volumes_done, LaneSums& sums) {
   using V = typename S::V;
   using P = typename S::P;
   constexpr std::int64_t stride = S::stride;
   const Coordinate* x = a.x + lane;
   Real* v = a.v + lane;
+  const Real* v_beyond = a.v_beyond + lane;
   Real* f = a.f + lane;
   Real* volume = a.volume + lane;
   const V alpha = load_doubles<V>(a.alpha + lane);
@@ -126,8 +192,7 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
   const V residual_shift = load_doubles<V>(a.residual_shift + lane);
   const auto k = static_cast<Real>(p.k), gamma = static_cast<Real>(p.gamma);
   Tensor<DoublesOf<V>> stress{}, kinetic{};
-  std::int64_t volumes_done = 0;
-  for (std::int64_t i = 0; i < network.n_nodes; ++i) {
+  for (std::int64_t i = range.begin; i < range.end; ++i) {
     if constexpr (many_body) {
       // Volumes run ahead of forces just as far as the bonds of the nodes up to here reach: what one pass reads is
       // still in the cache for the other.
@@ -135,7 +200,7 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
         const std::int64_t ahead = boba::kernels::volume_chunk;
         const std::int64_t end =
             network.reach[i] + ahead < network.n_nodes ? network.reach[i] + ahead : network.n_nodes;
-        node_volumes<S>(network, x, volume, a.quantum, volumes_done, end);
+        node_volumes<S, false>(network, x, volume, a.quantum, volumes_done, end, network.n_nodes);
         volumes_done = end;
       }
     }
@@ -152,26 +217,26 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
       const std::int64_t j = bond.other;
       const Triple<V> d = separation<S>(xi, load3<P>(x, j, stride), q);
       const V r2 = dot(d, d);
-      const V inverse_r = inverse_sqrt(r2);
-      const V r = r2 * inverse_r;
-      V normal_velocity{};
+      Triple<V> vj{};
       if constexpr (damped) {
-        normal_velocity = dot(d, difference(vi, load3<V>(v, j, stride))) * inverse_r;
+        const bool own = !shared || j < range.own_end;
+        vj = load3<V>(own ? v : v_beyond, own ? j : j - range.own_end, stride);
       }
-      V force;
+      V volumes{};
       if constexpr (many_body) {
-        const V ratio = (volume_i + load<V>(volume + j * stride)) * bond.inverse_volume;
-        force = boba::bond_force(k, alpha, gamma, r, bond.r0, bond.inverse_r0, cube_root(ratio), normal_velocity);
-      } else {
-        force = boba::bond_force_pairwise(k, gamma, r, bond.r0, normal_velocity);
+        volumes = volume_i + load<V>(volume + j * stride);
       }
-      const V s = force * inverse_r;
-      Triple<V> fj = load3<V>(f, j, stride);
+      const V s = bond_scale<many_body, damped>(bond, d, r2, vi, vj, volumes, alpha, k, gamma);
       for (int c = 0; c < 3; ++c) {
         fi.c[c] = multiply_add(s, d.c[c], fi.c[c]);
-        fj.c[c] = subtract_product(fj.c[c], s, d.c[c]);
       }
-      store3<V>(f, j, stride, fj);
+      if (!shared || j < range.own_end) {
+        Triple<V> fj = load3<V>(f, j, stride);
+        for (int c = 0; c < 3; ++c) {
+          fj.c[c] = subtract_product(fj.c[c], s, d.c[c]);
+        }
+        store3<V>(f, j, stride, fj);
+      }
       add_dyad<virial>(node_stress, s, d, r2);
     }
     add_to<virial>(stress, node_stress);
@@ -197,36 +262,79 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
   store_tensor(kinetic, sums.kinetic, lane);
 }
 
-template <bool many_body, bool damped, class Coordinate, class Real>
-void bond_block(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a, const BondParameters& p,
-                Virial virial, LaneSums& sums) {
-  for_lanes<Coordinate>(a.n_lanes, [&](int lane, auto storage) {
-    using S = decltype(storage);
-    switch (virial) {
-    case Virial::none:
-      bond_lanes<S, many_body, damped, Virial::none>(network, a, p, lane, sums);
-      break;
-    case Virial::trace:
-      bond_lanes<S, many_body, damped, Virial::trace>(network, a, p, lane, sums);
-      break;
-    case Virial::full:
-      bond_lanes<S, many_body, damped, Virial::full>(network, a, p, lane, sums);
-      break;
+/// Calls call with one truth value, or two, as constants.
+template <class Call> inline void with_constant(bool x, Call&& call) {
+  x ? call(Yes{}) : call(No{});
+}
+template <class Call> inline void with_constants(bool x, bool y, Call&& call) {
+  with_constant(x, [&](auto is_x) { with_constant(y, [&](auto is_y) { call(is_x, is_y); }); });
+}
+
+template <class Coordinate, class Real>
+void bond_forces(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a, const BondParameters& p,
+                 bool many_body, Virial virial, const NodeRange& range, std::int64_t& volumes_done, LaneSums& sums) {
+  const std::int64_t done_before = volumes_done; // the same for every register of lanes
+  with_constants(many_body, p.gamma != 0.0, [&](auto is_many_body, auto is_damped) {
+    with_constant(range.own_end < network.n_nodes, [&](auto is_shared) {
+      for_lanes<Coordinate>(a.n_lanes, [&](int lane, auto storage) {
+        using S = decltype(storage);
+        constexpr bool m = is_many_body.value, d = is_damped.value, o = is_shared.value;
+        volumes_done = done_before;
+        switch (virial) {
+        case Virial::none:
+          bond_lanes<S, m, d, o, Virial::none>(network, a, p, lane, range, volumes_done, sums);
+          break;
+        case Virial::trace:
+          bond_lanes<S, m, d, o, Virial::trace>(network, a, p, lane, range, volumes_done, sums);
+          break;
+        case Virial::full:
+          bond_lanes<S, m, d, o, Virial::full>(network, a, p, lane, range, volumes_done, sums);
+          break;
+        }
+      });
+    });
+  });
+}
+
+template <class S, bool many_body, bool damped, class Coordinate = typename S::Coordinate,
+          class Real = typename S::Real>
+void lanes_from_before(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a,
+                       const BondParameters& p, int lane, const NodeRange& range) {
+  using V = typename S::V;
+  using P = typename S::P;
+  constexpr std::int64_t stride = S::stride;
+  const V alpha = load_doubles<V>(a.alpha + lane), q = splat<V>(a.quantum);
+  const auto k = static_cast<Real>(p.k), gamma = static_cast<Real>(p.gamma);
+  Real* f = a.f + lane;
+  for_each_bond_from_before(network, range, [&](std::int64_t i, std::int64_t b) {
+    const std::int64_t j = network.bonds[b].other;
+    const Triple<V> d = separation<S>(load3<P>(a.x + lane, i, stride), load3<P>(a.x + lane, j, stride), q);
+    Triple<V> vi{}, vj{};
+    if constexpr (damped) {
+      vi = load3<V>(a.v + lane, i, stride);
+      vj = load3<V>(a.v + lane, j, stride);
     }
+    V volumes{};
+    if constexpr (many_body) {
+      volumes = load<V>(a.volume + lane + i * stride) + load<V>(a.volume + lane + j * stride);
+    }
+    const V s = bond_scale<many_body, damped>(network.bonds[b], d, dot(d, d), vi, vj, volumes, alpha, k, gamma);
+    Triple<V> fj = load3<V>(f, j, stride);
+    for (int c = 0; c < 3; ++c) {
+      fj.c[c] = subtract_product(fj.c[c], s, d.c[c]);
+    }
+    store3<V>(f, j, stride, fj);
   });
 }
 
 template <class Coordinate, class Real>
-void bond_forces(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& arrays,
-                 const BondParameters& parameters, bool many_body, Virial virial, LaneSums& sums) {
-  const bool damped = parameters.gamma != 0.0;
-  if (many_body) {
-    damped ? bond_block<true, true>(network, arrays, parameters, virial, sums)
-           : bond_block<true, false>(network, arrays, parameters, virial, sums);
-  } else {
-    damped ? bond_block<false, true>(network, arrays, parameters, virial, sums)
-           : bond_block<false, false>(network, arrays, parameters, virial, sums);
-  }
+void bond_forces_from_before(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a,
+                             const BondParameters& p, bool many_body, const NodeRange& range) {
+  with_constants(many_body, p.gamma != 0.0, [&](auto is_many_body, auto is_damped) {
+    for_lanes<Coordinate>(a.n_lanes, [&](int lane, auto storage) {
+      lanes_from_before<decltype(storage), is_many_body.value, is_damped.value>(network, a, p, lane, range);
+    });
+  });
 }
 
 } // namespace

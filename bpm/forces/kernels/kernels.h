@@ -44,8 +44,19 @@ template <class Coordinate, class Real> struct BlockArraysOf {
   const double* residual_shift; ///< per lane, see BondParameters
   double quantum;               ///< d; not read when coordinates are doubles
   int n_lanes;
+  /// Velocities of the nodes from NodeRange::own_end on, as they were before another thread kicked them; null: all
+  /// nodes are the call's own.
+  const Real* v_beyond = nullptr;
 };
 using BlockArrays = BlockArraysOf<double, double>;
+
+/// Nodes [begin, end) of a block. The nodes of several ranges may be dealt with at the same time by several threads:
+/// what a call adds to a node is added in the same order as by one call for all nodes, and to nodes before `own_end`
+/// alone.
+struct NodeRange {
+  int begin, end;
+  int own_end; ///< bonds to nodes from here on are another's to add there
+};
 
 struct BondParameters {
   double k, gamma;
@@ -77,8 +88,8 @@ struct Drift {
   std::uint64_t dither_seed;    ///< another one each step; mixed only
   int first_node;               ///< number of the first node in its grain; mixed only
   double lane_shift[max_lanes]; ///< residual_shift, with the lane's origin; mixed only
-  /// Numbers, from the first node of the call on, of nodes with any lane faster than sqrt(brisk_speed2) are written here, a
-  /// node once for every register of its lanes at most; null: nobody asks.
+  /// Numbers, from the first node of the call on, of nodes with any lane faster than sqrt(brisk_speed2) are written
+  /// here, a node once for every register of its lanes at most; null: nobody asks.
   std::int32_t* brisk;
   double brisk_speed2; ///< of u, d^2/tau^2
 };
@@ -168,10 +179,16 @@ struct PlaceRange {
 
 /// The kernels that walk through lane arrays.
 template <class Coordinate, class Real> struct LaneKernels {
-  /// volume[node][lane] += r^3 of every bond, at both of its nodes.
-  void (*volumes)(const NetworkOf<Real>&, const BlockArraysOf<Coordinate, Real>&);
+  /// volume[node][lane] += r^3 of every bond, for the nodes of a range.
+  void (*volumes)(const NetworkOf<Real>&, const BlockArraysOf<Coordinate, Real>&, const NodeRange&);
+  /// Adds the forces of the bonds of a range's nodes with later ones, and kicks these nodes, whose forces are then
+  /// complete. Volumes of nodes from `volumes_done` on are computed as far as they are needed, which it says
+  /// afterwards.
   void (*bonds)(const NetworkOf<Real>&, const BlockArraysOf<Coordinate, Real>&, const BondParameters&, bool many_body,
-                Virial, LaneSums&);
+                Virial, const NodeRange&, std::int64_t& volumes_done, LaneSums&);
+  /// Adds to a range's nodes the forces of their bonds with nodes before the range. Volumes must be known.
+  void (*bonds_from_before)(const NetworkOf<Real>&, const BlockArraysOf<Coordinate, Real>&, const BondParameters&,
+                            bool many_body, const NodeRange&);
   DriftResult (*drift)(Coordinate* x, const Real* v, int n_nodes, int n_lanes, const Drift&);
   /// to[node] of every listed node of one grain: its position (origin + what the arrays hold) and velocity.
   void (*collect)(const std::int32_t* nodes, std::int64_t n, const Coordinate* x, const Real* v, int stride,
@@ -200,10 +217,10 @@ struct KernelTable {
   std::int64_t (*contacts)(const ContactCandidates&, const ContactParameters&, ContactNode* rows, Touch* touches,
                            ContactSums&);
   /// Writes the places of some ranges closer than sqrt(reach2) to p into `found`, range by range and ascending, and
-  /// returns their number. `found` has room for found_room more numbers than there are places. Coordinates are rounded to
-  /// floats.
-  std::int32_t (*near_places)(const SortedNodes&, const PlaceRange* ranges, int n_ranges, const double* p, double reach2,
-                              std::int32_t* found);
+  /// returns their number. `found` has room for found_room more numbers than there are places. Coordinates are rounded
+  /// to floats.
+  std::int32_t (*near_places)(const SortedNodes&, const PlaceRange* ranges, int n_ranges, const double* p,
+                              double reach2, std::int32_t* found);
 };
 
 extern const KernelTable avx512_table;

@@ -4,9 +4,9 @@
 #include "bpm/dynamics/stepper.h"
 #include "tests/support/small_packings.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
+#include <utility>
 
 namespace boba::test {
 namespace {
@@ -63,6 +63,33 @@ TEST(Runs, DoNotDependOnThreads) {
   for (const int threads : {2, 3, 4}) {
     expect_same_bits(one, sheared(threads));
     expect_same_bits(one_mixed, sheared(threads, 1000000, Remap::positions, Precision::mixed));
+  }
+}
+
+// Three grains are one block, which the threads share; that needs grains large enough.
+TEST(Runs, DoNotDependOnThreadsThatShareABlock) {
+  const Box box(Vector3::Zero(), {26.0, 25.0, 27.0}, {9.0, -7.0, 8.0});
+  const auto run = [&](int threads, Precision precision) {
+    Packing packing = small_packing({.box = box, .n_grains = 3, .radius = 6.5, .least_distance = 11.0});
+    EXPECT_GT(packing.templates.front()->n_nodes(), 1000);
+    Stepper stepper(std::move(packing), {}, {.threads = threads, .precision = precision});
+    stepper.start();
+    for (int step = 0; step < 30; ++step) {
+      stepper.advance(step % 3 == 2 ? Virial::full : Virial::trace);
+    }
+    return std::make_pair(stepper.snapshot(all_parts), stepper.forces().grain_sums());
+  };
+  for (const Precision precision : {Precision::full, Precision::mixed}) {
+    const auto [one, sums_of_one] = run(1, precision);
+    for (const int threads : {2, 3, 5}) {
+      const auto [several, sums] = run(threads, precision);
+      expect_same_bits(one, several);
+      for (std::size_t g = 0; g < sums.size(); ++g) {
+        EXPECT_EQ(sums[g].virial, sums_of_one[g].virial);
+        EXPECT_EQ(sums[g].kinetic, sums_of_one[g].kinetic);
+        EXPECT_EQ(sums[g].virial_trace, sums_of_one[g].virial_trace);
+      }
+    }
   }
 }
 
