@@ -166,9 +166,9 @@ void ForceField::split_bonds_of(const std::vector<int>& blocks, int n_pieces, La
     passes[k].arrays.residual_shift = passes[k].residual_shift.data();
   }
   const auto& lane_kernels = kernels_of(table_, lanes);
-  const auto range_of = [](const Block& block, int n, int piece) {
-    const int end = piece_begin(block.n_nodes, n, piece + 1);
-    return kernels::NodeRange{piece_begin(block.n_nodes, n, piece), end, end};
+  const auto range_of = [n_pieces](const Block& block, int piece) {
+    const int end = piece_begin(block.n_nodes, n_pieces, piece + 1);
+    return kernels::NodeRange{piece_begin(block.n_nodes, n_pieces, piece), end, end};
   };
 #pragma omp parallel
   {
@@ -183,7 +183,7 @@ void ForceField::split_bonds_of(const std::vector<int>& blocks, int n_pieces, La
       const int k = task / n_pieces, piece = task % n_pieces;
       const Block& block = *passes[k].block;
       if (block.many_body) {
-        const kernels::NodeRange range = range_of(block, n_pieces, piece);
+        const kernels::NodeRange range = range_of(block, piece);
         const auto first = scratch[k].volume.begin();
         std::fill(first + static_cast<std::ptrdiff_t>(range.begin) * block.n_lanes,
                   first + static_cast<std::ptrdiff_t>(range.end) * block.n_lanes, Real{0});
@@ -194,7 +194,7 @@ void ForceField::split_bonds_of(const std::vector<int>& blocks, int n_pieces, La
     for (int task = 0; task < n_blocks * n_pieces; ++task) {
       const int k = task / n_pieces, piece = task % n_pieces;
       const Block& block = *passes[k].block;
-      const kernels::NodeRange range = range_of(block, n_pieces, piece);
+      const kernels::NodeRange range = range_of(block, piece);
       const auto network = passes[k].network->template view_as<Real>();
       lane_kernels.bonds_from_before(network, passes[k].arrays, passes[k].parameters, block.many_body, range);
       const std::int64_t width = 3 * static_cast<std::int64_t>(block.n_lanes);

@@ -47,6 +47,12 @@ template <class V> inline V dot(const Triple<V>& a, const Triple<V>& b) {
   return multiply_add(a.c[2], b.c[2], multiply_add(a.c[1], b.c[1], a.c[0] * b.c[0]));
 }
 
+/// r^3 of a separation.
+template <class V> inline V cube_of(const Triple<V>& d) {
+  const V r2 = dot(d, d);
+  return r2 * r2 * inverse_sqrt(r2);
+}
+
 /// Adds r^3 of the bonds of the nodes [begin, end) to the volumes of both of their nodes, but not to nodes from own_end
 /// on. Pointers start at the first lane.
 template <class S, bool shared, class Coordinate = typename S::Coordinate, class Real = typename S::Real>
@@ -62,8 +68,7 @@ void node_volumes(const NetworkOf<Real>& network, const Coordinate* x, Real* vol
     for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
       const std::int64_t j = network.bonds[b].other;
       const Triple<V> d = separation<S>(xi, load3<P>(x, j, stride), q);
-      const V r2 = dot(d, d);
-      const V cube = r2 * r2 * inverse_sqrt(r2);
+      const V cube = cube_of(d);
       sum += cube;
       if (!shared || j < own_end) {
         store<V>(volume + j * stride, load<V>(volume + j * stride) + cube);
@@ -106,8 +111,7 @@ void volumes_of_nodes(const NetworkOf<Real>& network, const BlockArraysOf<Coordi
       const std::int64_t j = network.bonds[b].other;
       const Triple<V> d = separation<S>(load3<typename S::P>(x, i, S::stride), load3<typename S::P>(x, j, S::stride),
                                         splat<V>(a.quantum));
-      const V r2 = dot(d, d);
-      const V cube = r2 * r2 * inverse_sqrt(r2);
+      const V cube = cube_of(d);
       store<V>(volume + j * S::stride, load<V>(volume + j * S::stride) + cube);
     });
     node_volumes<S, true>(network, x, volume, a.quantum, range.begin, range.end, range.own_end);
@@ -172,6 +176,16 @@ inline V bond_scale(const BondRecordOf<Real>& bond, const Triple<V>& d, V r2, co
   return force * inverse_r;
 }
 
+/// Takes s d, the force on a bond's first node, from its second node j.
+template <class V, class Real>
+inline void add_to_second(Real* f, std::int64_t j, std::int64_t stride, V s, const Triple<V>& d) {
+  Triple<V> fj = load3<V>(f, j, stride);
+  for (int c = 0; c < 3; ++c) {
+    fj.c[c] = subtract_product(fj.c[c], s, d.c[c]);
+  }
+  store3<V>(f, j, stride, fj);
+}
+
 /// One pass over a range of nodes. A node's force is complete when its own bonds are done, since bonds to earlier nodes
 /// were added when those were visited; nobody needs its velocity any more, so it is kicked on the spot. `shared`: other
 /// threads deal with the nodes from own_end on.
@@ -184,7 +198,7 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
   constexpr std::int64_t stride = S::stride;
   const Coordinate* x = a.x + lane;
   Real* v = a.v + lane;
-  const Real* v_beyond = a.v_beyond + lane;
+  const Real* v_beyond = shared ? a.v_beyond + lane : nullptr;
   Real* f = a.f + lane;
   Real* volume = a.volume + lane;
   const V alpha = load_doubles<V>(a.alpha + lane);
@@ -231,11 +245,7 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
         fi.c[c] = multiply_add(s, d.c[c], fi.c[c]);
       }
       if (!shared || j < range.own_end) {
-        Triple<V> fj = load3<V>(f, j, stride);
-        for (int c = 0; c < 3; ++c) {
-          fj.c[c] = subtract_product(fj.c[c], s, d.c[c]);
-        }
-        store3<V>(f, j, stride, fj);
+        add_to_second(f, j, stride, s, d);
       }
       add_dyad<virial>(node_stress, s, d, r2);
     }
@@ -319,11 +329,7 @@ void lanes_from_before(const NetworkOf<Real>& network, const BlockArraysOf<Coord
       volumes = load<V>(a.volume + lane + i * stride) + load<V>(a.volume + lane + j * stride);
     }
     const V s = bond_scale<many_body, damped>(network.bonds[b], d, dot(d, d), vi, vj, volumes, alpha, k, gamma);
-    Triple<V> fj = load3<V>(f, j, stride);
-    for (int c = 0; c < 3; ++c) {
-      fj.c[c] = subtract_product(fj.c[c], s, d.c[c]);
-    }
-    store3<V>(f, j, stride, fj);
+    add_to_second(f, j, stride, s, d);
   });
 }
 
