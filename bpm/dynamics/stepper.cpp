@@ -13,7 +13,8 @@ namespace boba {
 
 namespace {
 
-/// Steps between two looks at the range of fixed-point positions. In one step a node moves at most half a diameter.
+/// Steps between two looks at the range of fixed-point positions, and at the momentum of floats. In one step a node moves
+/// at most half a diameter.
 constexpr std::int64_t recentre_interval = 64;
 constexpr double largest_range_share = 0.45;
 /// Kinetic energy of full steps over that of half steps below which velocities change sign from step to step.
@@ -106,6 +107,7 @@ void Stepper::start() {
   started_ = true;
   // The dumped velocities are those of the full step: the sums must see them as they are.
   evaluate({.kick = 0.5 * options_.dt, .virial = Virial::full, .residual_rate = residual_rate_});
+  note_momentum();
 }
 
 void Stepper::advance(Virial virial) {
@@ -118,6 +120,9 @@ void Stepper::advance(Virial virial) {
   }
   evaluate({.kick = options_.dt, .half_kick = 0.5 * options_.dt, .virial = virial, .residual_rate = residual_rate_});
   ++step_;
+  if (step_ % recentre_interval == 0) {
+    restore_momentum();
+  }
 }
 
 void Stepper::drift() {
@@ -240,6 +245,7 @@ void Stepper::add_streaming(double rate, double sign) {
     }
   }
   set_residual_gradient(simple_shear(sign > 0.0 ? rate : 0.0));
+  note_momentum();
 }
 
 double Stepper::virial_pressure_when_scaled(const std::vector<Vector3>& x, double factor) {

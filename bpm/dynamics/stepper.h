@@ -121,6 +121,9 @@ private:
   void restore_nodes(const SavedState& saved);
   void save_ends(SavedState& saved) const;
   void restore_ends(const SavedState& saved);
+  Vector3 velocity_sum() const;
+  void note_momentum();
+  void restore_momentum();
   void drift();
   double largest_allowed_speed() const { return 0.5 * material_.diameter / options_.dt; }
   Agreement::Speeds largest_speeds(const std::vector<BlockMotion>& results) const;
@@ -149,6 +152,7 @@ private:
   Matrix3 residual_rate_ = Matrix3::Zero();    ///< the rest, as a rate of the cell matrix
   double evaluated_volume_ = 1.0;              ///< of the cell that the last forces belong to
   double pressure_ = 0.0, kinetic_energy_ = 0.0;
+  Vector3 velocity_sum_ = Vector3::Zero(); ///< of all nodes, that is the momentum over a node's mass, when the run began
   double integration_seconds_ = 0.0;
   mutable double reduction_seconds_ = 0.0;
   double worked_until_ = 0.0; ///< seconds of work at the last look at the balance

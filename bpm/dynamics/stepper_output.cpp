@@ -140,6 +140,7 @@ void Stepper::save(SavedState& saved) const {
   saved.real["position_map"] = flat(position_map_);
   saved.real["residual_rate"] = flat(residual_rate_);
   saved.real["scalars"] = {strain_, evaluated_volume_, pressure_, kinetic_energy_};
+  saved.real["velocity_sum"] = {velocity_sum_.begin(), velocity_sum_.end()};
   saved.integer["step"] = {step_};
   saved.integer["started"] = {started_ ? 1 : 0, forces_kept_ ? 1 : 0};
   save_ends(saved);
@@ -243,6 +244,8 @@ void Stepper::restore(const SavedState& saved) {
   evaluated_volume_ = scalars.at(1);
   pressure_ = scalars.at(2);
   kinetic_energy_ = scalars.at(3);
+  const std::vector<double>& sum = saved.real.at("velocity_sum");
+  velocity_sum_ = {sum.at(0), sum.at(1), sum.at(2)};
   restore_ends(saved);
   step_ = saved.integer.at("step").at(0);
   started_ = saved.integer.at("started").at(0) != 0;

@@ -143,6 +143,20 @@ void LaneState::set_force(int grain, int node, const Vector3& f) {
   visit([&](auto& arrays) { set_triple(arrays.f, layout_.index(grain, node, 0), layout_.stride(grain), f); });
 }
 
+Vector3 LaneState::velocity_sum(int grain) const {
+  Vector3 sum = Vector3::Zero();
+  for (int node = 0; node < layout_.n_nodes(grain); ++node) {
+    sum += velocity(grain, node);
+  }
+  return sum;
+}
+
+void LaneState::add_velocity(int grain, const Vector3& change) {
+  for (int node = 0; node < layout_.n_nodes(grain); ++node) {
+    set_velocity(grain, node, velocity(grain, node) + change);
+  }
+}
+
 void LaneState::map_origins(const Matrix3& map, const Vector3& shift) {
   if (precision() == Precision::mixed) {
     for (Vector3& origin : origin_) {

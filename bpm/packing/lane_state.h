@@ -49,6 +49,10 @@ public:
   void set_velocity(int grain, int node, const Vector3& v);
   void set_force(int grain, int node, const Vector3& f);
 
+  Vector3 velocity_sum(int grain) const;
+  /// Adds to the velocity of every node of a grain.
+  void add_velocity(int grain, const Vector3& change);
+
   /// Moves the origins with an affine map; the drift moves the nodes. Nothing in full precision.
   void map_origins(const Matrix3& map, const Vector3& shift);
   /// Puts origins back to where their grains are, by whole quanta; positions do not change. Returns the largest
