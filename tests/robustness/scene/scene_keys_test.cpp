@@ -4,97 +4,18 @@
 #include "bpm/io/input_error.h"
 #include "bpm/scene/scene.h"
 #include "bpm/scene/schema.h"
+#include "tests/robustness/scene/trial_scene.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <map>
 #include <sstream>
 
 namespace boba {
 namespace {
 
-/// A scene that is right, with one line to be tried in the table of a section.
-class TrialScene {
-public:
-  TrialScene(const SceneSection& section, const std::string& key) : section_(section), key_(key) {}
-
-  /// The text with `line` in the table; without it the scene is right unless the key is needed.
-  std::string text(const std::string& line) const {
-    std::string text = section_.path.empty() ? line + "\n" : "";
-    const bool is_specimen = section_.kind == "specimen" || section_.kind == "press";
-    if (section_.path == "start") {
-      return text + table(line) + "[[stage]]\ntype = \"hold\"\ntime = 1.0\n";
-    }
-    if (!section_.path.empty() && section_.path != "stage") {
-      text += table(line);
-    }
-    text += "[[template]]\nname = \"t\"\nnodes = 60\n[[species]]\ntemplate = \"t\"\nalpha = 1.0\n";
-    text += is_specimen ? "count = 1\n" : "count = 2\n";
-    if (section_.kind == "insert" || section_.kind == "specimen") {
-      return text + table(line) + "[[stage]]\ntype = \"hold\"\ntime = 1.0\n";
-    }
-    text += is_specimen ? "[[stage]]\ntype = \"specimen\"\n" : "[[stage]]\ntype = \"insert\"\n";
-    return text + (section_.path == "stage" ? table(line) : "");
-  }
-
-  /// Number of the line that is tried.
-  static int line_number(const std::string& text, const std::string& line) {
-    return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(line)), '\n'));
-  }
-
-private:
-  std::string table(const std::string& line) const {
-    std::string text = section_.repeated ? "[[" + section_.path + "]]\n" : "[" + section_.path + "]\n";
-    if (!section_.kind.empty()) {
-      text += "type = \"" + section_.kind + "\"\n";
-    }
-    text += line + "\n";
-    for (const auto& [name, value] : companions()) {
-      if (name != key_) {
-        text += name + " = " + value + "\n";
-      }
-    }
-    return text;
-  }
-
-  /// What the table needs beside the key.
-  std::map<std::string, std::string> companions() const {
-    const std::string& path = section_.path;
-    if (path == "template") {
-      return {{"name", "\"u\""}};
-    }
-    if (path == "species") {
-      std::map<std::string, std::string> needed = {{"count", "2"}, {"template", "\"t\""}};
-      if (key_ != "poisson") {
-        needed["alpha"] = "2.0";
-      }
-      return needed;
-    }
-    if (path == "measure") {
-      return {{"what", "\"stress\""}};
-    }
-    if (path == "start") {
-      return key_.starts_with("lammps") ? std::map<std::string, std::string>{{"lammps_reference", "\"a.data\""}}
-                                        : std::map<std::string, std::string>{{"trajectory", "\"a.h5\""}};
-    }
-    const std::map<std::string, std::map<std::string, std::string>> of_stage = {
-        {"compress", {{"pressure", "0.1"}}},
-        {"hold", {{"time", "1.0"}, {"pressure", "0.1"}}},
-        {"shear", {{"rate", "1e-3"}, {"strain", "0.5"}, {"pressure", "0.1"}}},
-        {"press", {{"strain", "0.1"}}}};
-    const auto found = of_stage.find(section_.kind);
-    auto needed = found == of_stage.end() ? std::map<std::string, std::string>{} : found->second;
-    if (key_ == "normalised_pressure") {
-      needed.erase("pressure");
-    }
-    return needed;
-  }
-
-  const SceneSection& section_;
-  std::string key_;
-};
+using test::TrialScene;
 
 std::string message(const std::string& text) {
   try {
