@@ -21,6 +21,8 @@ function(boba_add_library name)
   add_library(boba::${name} ALIAS boba_${name})
 endfunction()
 
+set(BOBA_TIMEOUT_FACTOR 1 CACHE STRING "what tests may take longer in this build: sanitizers slow them down")
+
 # boba_add_test(NAME LABEL label SOURCES ... LIBRARIES ...): one GoogleTest program; each of its cases is a
 # ctest of its own. ${CMAKE_SOURCE_DIR}/tests/data is reachable as BOBA_TEST_DATA.
 function(boba_add_test name)
@@ -28,6 +30,7 @@ function(boba_add_test name)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
+  math(EXPR ARG_TIMEOUT "${ARG_TIMEOUT} * ${BOBA_TIMEOUT_FACTOR}")
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gtest_main boba_warnings)
   target_compile_definitions(${name} PRIVATE BOBA_TEST_DATA="${CMAKE_SOURCE_DIR}/tests/data")

@@ -88,27 +88,21 @@ def plot_energy(folder):
 
 
 def plot_rounding(folder):
-    growth, rest, momenta = (table(folder, name) for name in ("rounding_growth", "rest", "conservation"))
-    rest += table(folder, "rest_mixed")
-    figure, axes = plt.subplots(1, 3, figsize=(14, 4), constrained_layout=True)
+    growth, momenta = (table(folder, name) for name in ("rounding_growth", "conservation"))
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4), constrained_layout=True)
     for k, (alpha, gamma) in enumerate(sorted({(row["alpha_kd"], row["gamma"]) for row in growth})):
         for precision, sign in (("double", "-"), ("mixed", ":")):
             axes[0].semilogy(*curve(growth, "time_tau", "distance_d", alpha_kd=alpha, gamma=gamma, precision=precision), sign, color=f"C{k}",
                              lw=1, label=f"alpha = {alpha:g}, gamma = {gamma:.0f}, {precision}")
     axes[0].set(xlabel="time (tau)", ylabel="distance from the long double twin (d)", title="error growth in a shaken packing")
     axes[0].legend(fontsize=6)
-    for precision, colour in (("double", "C0"), ("mixed", "C1")):
-        axes[1].loglog(*curve(rest, "steps", "kinetic_kd2", precision=precision), color=colour, lw=1, label=f"kinetic energy, {precision} (k d^2)")
-        axes[1].loglog(*curve(rest, "steps", "moved_d", precision=precision), "--", color=colour, lw=1, label=f"farthest node, {precision} (d)")
-    axes[1].set(xlabel="steps", title="packing at rest, alpha = 2, damped")
-    axes[1].legend(fontsize=7)
     for k, case in enumerate(sorted({(row["alpha_kd"], row["gamma"], row["precision"]) for row in momenta})):
         wanted = dict(zip(("alpha_kd", "gamma", "precision"), case))
         label = f"alpha = {case[0]:g}, gamma = {case[1]:.0f}, {case[2]}"
-        axes[2].loglog(*curve(momenta, "steps", "momentum_error", **wanted), "-", color=f"C{k}", lw=1, label=label)
-        axes[2].loglog(*curve(momenta, "steps", "angular_error", **wanted), "--", color=f"C{k}", lw=1)
-    axes[2].set(xlabel="steps", ylabel="relative change", title="momentum (-), angular momentum (--)")
-    axes[2].legend(fontsize=6)
+        axes[1].loglog(*curve(momenta, "steps", "momentum_error", **wanted), "-", color=f"C{k}", lw=1, label=label)
+        axes[1].loglog(*curve(momenta, "steps", "angular_error", **wanted), "--", color=f"C{k}", lw=1)
+    axes[1].set(xlabel="steps", ylabel="relative change", title="momentum (-), angular momentum (--)")
+    axes[1].legend(fontsize=6)
     return figure
 
 

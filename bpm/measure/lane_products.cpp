@@ -26,7 +26,6 @@ void multiply_row(const double* c_re, const double* c_im, int n_terms, const Com
   for (; column + group <= n_columns; column += group) {
     Lanes re[registers] = {}, im[registers] = {};
     const double* row_re = m.re + column;
-    const double* row_im = m.im + column;
     if (m.im == nullptr) {
       for (int k = 0; k < n_terms; ++k, row_re += m.stride) {
         for (int r = 0; r < registers; ++r) {
@@ -35,6 +34,7 @@ void multiply_row(const double* c_re, const double* c_im, int n_terms, const Com
         }
       }
     } else {
+      const double* row_im = m.im + column;
       for (int k = 0; k < n_terms; ++k, row_re += m.stride, row_im += m.stride) {
         for (int r = 0; r < registers; ++r) {
           const Lanes a = at(row_re + r * lanes), b = at(row_im + r * lanes);

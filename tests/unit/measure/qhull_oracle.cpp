@@ -24,7 +24,9 @@ QhullResult qhull(std::span<const Vector3> points) {
   FORALLvertices {
     result.vertices.insert(qh_pointid(qh, vertex->point));
   }
-  qh_freeqhull(qh, qh_ALL);
+  qh_freeqhull(qh, !qh_ALL);
+  int n_long = 0, long_bytes = 0;
+  qh_memfreeshort(qh, &n_long, &long_bytes);
   return result;
 }
 
