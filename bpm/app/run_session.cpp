@@ -159,9 +159,9 @@ private:
     }
     const Timings t = simulation_.timings();
     log_.note(fmt::format(
-        "seconds: bonds {:.2f}, contacts {:.2f}, search {:.2f}, integration {:.2f}, other {:.2f}; {} steps, {} "
+        "seconds: bonds {:.2f}, contacts {:.2f}, search {:.2f}, integration {:.2f}; {} steps, {} "
         "contact lists",
-        t.bonds, t.contacts, t.search, t.integration, t.other, t.steps, t.list_builds));
+        t.bonds, t.contacts, t.search, t.integration, t.steps, t.list_builds));
     if (ranks_.many()) {
       log_.note(fmt::format("rank 0: halo {:.2f} s, reductions {:.2f} s; received {} messages, {} bytes of nodes; {} halos, {} "
                             "grains moved here",

@@ -41,7 +41,7 @@ struct Totals {
 
 /// Seconds spent in each part of the steps so far, for the benchmark and the log.
 struct Timings {
-  double bonds = 0.0, contacts = 0.0, search = 0.0, integration = 0.0, other = 0.0;
+  double bonds = 0.0, contacts = 0.0, search = 0.0, integration = 0.0;
   double halo = 0.0, reductions = 0.0; ///< waiting for other ranks: for their nodes, for what all must know
   std::int64_t steps = 0, list_builds = 0;
   std::int64_t halo_messages = 0, halo_bytes = 0, halo_builds = 0, migrated_grains = 0; ///< received by this rank

@@ -36,19 +36,11 @@ std::vector<Vector3> fractional_centres(const Packing& packing) {
   return centres;
 }
 
-std::vector<int> nodes_of_grains(const Packing& packing) {
-  std::vector<int> n_nodes;
-  for (int g = 0; g < packing.n_grains(); ++g) {
-    n_nodes.push_back(packing.template_of(g).n_nodes());
-  }
-  return n_nodes;
-}
-
 Distribution first_distribution(const Packing& packing, const SimulationOptions& options) {
   if (!options.ranks->many()) {
     return {};
   }
-  const std::vector<int> n_nodes = nodes_of_grains(packing);
+  const std::vector<int> n_nodes = packing.nodes_of_grains();
   const PlacementInput input = {&packing,
                                 options.ranks->size(),
                                 lanes_of_block(options.precision),

@@ -13,14 +13,6 @@ namespace {
 /// Grains are moved when the largest share of the work is larger than it could be by more than this.
 constexpr double worthwhile_gain = 0.05;
 
-std::vector<int> nodes_of_grains(const LaneLayout& layout) {
-  std::vector<int> n_nodes(layout.n_grains());
-  for (int g = 0; g < layout.n_grains(); ++g) {
-    n_nodes[g] = layout.n_nodes(g);
-  }
-  return n_nodes;
-}
-
 } // namespace
 
 /// Roots: all nodes, on rank 0. Leaves: each rank's own, grain by grain.
@@ -136,7 +128,7 @@ void Stepper::move_grains(std::vector<int> owner) {
   const std::size_t size = state_.node_bytes();
   const ForceField::Results results = forces_.shared_results();
   const Ownership before = std::move(distribution_.ownership);
-  const std::vector<int> n_nodes = nodes_of_grains(layout_);
+  const std::vector<int> n_nodes = packing_.nodes_of_grains();
   std::vector<Vector3> origins = state_.origins();
   ranks().share_rows({origins.data()->data(), 3 * origins.size()}, 3, before);
   std::vector<std::byte> old_nodes(size * before.n_nodes_of(ranks().rank()));

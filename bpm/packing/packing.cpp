@@ -11,6 +11,14 @@ std::vector<std::int64_t> Packing::first_nodes() const {
   return first;
 }
 
+std::vector<int> Packing::nodes_of_grains() const {
+  std::vector<int> n_nodes;
+  for (int g = 0; g < n_grains(); ++g) {
+    n_nodes.push_back(template_of(g).n_nodes());
+  }
+  return n_nodes;
+}
+
 Topology Packing::topology(bool with_bonds) const {
   Topology topology;
   topology.first_node = first_nodes();

@@ -36,6 +36,7 @@ struct Packing {
   const GrainTemplate& template_of(int grain) const { return *templates[grains[grain].template_index]; }
   /// Number of the first node of each grain, and the total as last entry (size n_grains + 1).
   std::vector<std::int64_t> first_nodes() const;
+  std::vector<int> nodes_of_grains() const;
   /// Bonds are written out for every grain only when `with_bonds`.
   Topology topology(bool with_bonds) const;
 };
