@@ -9,6 +9,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import LogLocator, NullFormatter
 
 POISSON = {"-0.8": 0.4, "0": 0.25, "2": 0.0, "5": -0.25, "12": -0.5}
 COLOURS = {"-0.8": "#1b6ca8", "0": "#2a9d8f", "2": "#7a9e2e", "5": "#d98e04", "12": "#c1121f"}
@@ -273,6 +274,9 @@ def figure_s3(results, folder):
     left.set_title("circles: 300 nodes; crosses: remap velocities; squares: 5137 nodes", fontsize=8, loc="left")
     for axes in (left, right):
         axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_xlabel("inertial number I")
     left.legend(fontsize=8)
     save(figure, folder, "figure_S3")
