@@ -18,6 +18,8 @@ def frames(path):
     with h5py.File(path, "r") as file:
         n = len(file["particles/all/id"])
         velocities = "velocity" in file["particles/all"]
+        if len(file["particles/all/position/step"]) == 0:
+            return []  # killed before its first frame: MDAnalysis does not open a file without any
     universe = MDAnalysis.Universe.empty(n, trajectory=True, velocities=velocities)
     universe.load_new(path, format="H5MD", convert_units=False)
     return [(frame.data["step"], frame.positions.copy(), frame.velocities.copy() if velocities else None, frame.dimensions.copy())
