@@ -3,6 +3,8 @@
 
 #include "bpm/measure/vector_clones.h"
 
+#include <cstring>
+
 namespace boba::measure {
 
 namespace {
@@ -10,11 +12,8 @@ namespace {
 constexpr int lanes = 8;     ///< doubles of one 512-bit register
 constexpr int registers = 4; ///< sums held at once, to hide the latency of the products
 
-typedef double Lanes __attribute__((vector_size(lanes * sizeof(double)), aligned(alignof(double)), may_alias));
-
-inline const Lanes& at(const double* p) {
-  return *reinterpret_cast<const Lanes*>(p);
-}
+/// Loaded and stored by copies: rows begin at any number.
+typedef double Lanes __attribute__((vector_size(lanes * sizeof(double))));
 
 } // namespace
 
@@ -29,15 +28,19 @@ void multiply_row(const double* c_re, const double* c_im, int n_terms, const Com
     if (m.im == nullptr) {
       for (int k = 0; k < n_terms; ++k, row_re += m.stride) {
         for (int r = 0; r < registers; ++r) {
-          re[r] += c_re[k] * at(row_re + r * lanes);
-          im[r] += c_im[k] * at(row_re + r * lanes);
+          Lanes a;
+          std::memcpy(&a, row_re + r * lanes, sizeof a);
+          re[r] += c_re[k] * a;
+          im[r] += c_im[k] * a;
         }
       }
     } else {
       const double* row_im = m.im + column;
       for (int k = 0; k < n_terms; ++k, row_re += m.stride, row_im += m.stride) {
         for (int r = 0; r < registers; ++r) {
-          const Lanes a = at(row_re + r * lanes), b = at(row_im + r * lanes);
+          Lanes a, b;
+          std::memcpy(&a, row_re + r * lanes, sizeof a);
+          std::memcpy(&b, row_im + r * lanes, sizeof b);
           re[r] += c_re[k] * a;
           im[r] += c_re[k] * b;
           re[r] -= c_im[k] * b;
@@ -46,8 +49,8 @@ void multiply_row(const double* c_re, const double* c_im, int n_terms, const Com
       }
     }
     for (int r = 0; r < registers; ++r) {
-      *reinterpret_cast<Lanes*>(out_re + column + r * lanes) = re[r];
-      *reinterpret_cast<Lanes*>(out_im + column + r * lanes) = im[r];
+      std::memcpy(out_re + column + r * lanes, &re[r], sizeof re[r]);
+      std::memcpy(out_im + column + r * lanes, &im[r], sizeof im[r]);
     }
   }
   // What is left: fewer than `group` columns, the compiler's vectors serve.
