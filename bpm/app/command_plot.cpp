@@ -10,7 +10,7 @@ namespace {
 
 /// The plot program: beside the installed program's data, or in the source tree a build folder belongs to.
 std::filesystem::path plot_script() {
-  const std::filesystem::path installed = program_folder().parent_path() / "share/boba/plot";
+  std::filesystem::path installed = program_folder().parent_path() / "share/boba/plot";
   if (!std::filesystem::exists(installed)) {
     throw std::runtime_error(fmt::format("plot: {} is missing", installed.string()));
   }

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fmt/format.h>
 #include <stdexcept>
+#include <string_view>
 #include <thread>
 
 namespace boba {
@@ -57,7 +58,7 @@ ExitCode on_all_ranks(const std::function<ExitCode(const Ranks&)>& work) {
 bool is_other_rank() {
   for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}) {
     if (const char* rank = std::getenv(name); rank != nullptr) {
-      return std::atoi(rank) != 0;
+      return std::string_view(rank) != "0";
     }
   }
   return false;

@@ -45,7 +45,7 @@ std::shared_ptr<TrajectoryWriter> trajectory_writer(const RunSetup& setup, const
   return std::make_shared<TrajectoryWriter>(path, topology, origin, options, mode);
 }
 
-FrameObserver::Write dump_writer(const RunSetup& setup, std::shared_ptr<const Topology> topology,
+FrameObserver::Write dump_writer(const RunSetup& setup, const std::shared_ptr<const Topology>& topology,
                                  std::int64_t last_step) {
   const std::filesystem::path path = setup.folder.dump();
   if (setup.restart) {
@@ -56,7 +56,7 @@ FrameObserver::Write dump_writer(const RunSetup& setup, std::shared_ptr<const To
   return [writer, topology](const Snapshot& snapshot) { writer->write(*topology, snapshot); };
 }
 
-FrameObserver::Write vtk_writer(const RunSetup& setup, std::shared_ptr<const Topology> topology,
+FrameObserver::Write vtk_writer(const RunSetup& setup, const std::shared_ptr<const Topology>& topology,
                                 std::int64_t last_step) {
   const std::filesystem::path path = setup.folder.vtk() / "packing.pvd";
   std::filesystem::create_directories(setup.folder.vtk());

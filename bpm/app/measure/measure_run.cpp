@@ -169,13 +169,13 @@ MeasureRunResult measure_run(const MeasureRunOptions& options) {
   MeasureRunResult result;
   result.folder = folder_of(options);
   result.velocity_known = reader.has_velocity();
-  UndeformedGrains undeformed = undeformed_grains(reader.topology(), reader.snapshot(0));
+  const UndeformedGrains undeformed = undeformed_grains(reader.topology(), reader.snapshot(0));
   result.undeformed_known =
       std::none_of(undeformed.nodes.begin(), undeformed.nodes.end(), [](const auto& nodes) { return nodes.empty(); });
   const std::optional<Scene> scene = scene_of(reader.origin(), trajectory_of(options.run));
   MeasurePlan plan = options.plan;
   plan.material = scene ? scene->material : plan.material;
-  MeasureTables tables(result.folder, reader.topology(), plan, std::move(undeformed),
+  MeasureTables tables(result.folder, reader.topology(), plan, undeformed,
                        options.force ? FileMode::overwrite : FileMode::create);
   if (plan.has(MeasureKind::stress)) {
     auto [stress, reason] = frame_stress(options, scene);

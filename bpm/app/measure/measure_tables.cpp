@@ -52,6 +52,7 @@ Tensor6 total_stress(const std::vector<Tensor6>& grains, const Box& box) {
 
 std::vector<double> hull_radii(const std::vector<ConvexHull>& hulls) {
   std::vector<double> radii;
+  radii.reserve(hulls.size());
   for (const ConvexHull& hull : hulls) {
     radii.push_back(std::cbrt(3.0 * hull_shape(hull).volume / (4.0 * std::numbers::pi)));
   }
@@ -61,7 +62,7 @@ std::vector<double> hull_radii(const std::vector<ConvexHull>& hulls) {
 } // namespace
 
 MeasureTables::MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan,
-                             UndeformedGrains undeformed, FileMode mode, std::int64_t last_step)
+                             const UndeformedGrains& undeformed, FileMode mode, std::int64_t last_step)
     : folder_(std::move(folder)), topology_(topology), plan_(std::move(plan)) {
   if (plan_.has(MeasureKind::shape) || plan_.has(MeasureKind::packing_fraction)) {
     for (const std::vector<Vector3>& nodes : undeformed.nodes) {

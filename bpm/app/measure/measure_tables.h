@@ -23,7 +23,7 @@ class MeasureTables {
 public:
   /// \param last_step with FileMode::append: rows after this step are removed, and the tables go on
   /// \throws std::runtime_error when a table exists (FileMode::create) or cannot be written.
-  MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan, UndeformedGrains undeformed,
+  MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan, const UndeformedGrains& undeformed,
                 FileMode mode, std::int64_t last_step = -1);
 
   void add(const Snapshot& snapshot);

@@ -184,7 +184,8 @@ void MeasureTables::restore_motion(const std::vector<double>& saved) {
   std::generate(displacements.begin(), displacements.end(), take_vector);
   NeighbourLists neighbours(n);
   for (auto& list : neighbours) {
-    for (double left = take(); left > 0.0; --left) {
+    const double n_neighbours = take(); // from a file: a count only as long as there are numbers
+    for (std::int64_t i = 0; static_cast<double>(i) < n_neighbours; ++i) {
       const int grain = static_cast<int>(take());
       const Vector3 vector = take_vector();
       list.push_back({grain, vector, take()});
