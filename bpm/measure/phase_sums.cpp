@@ -5,6 +5,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 namespace boba::measure {
@@ -15,7 +16,8 @@ constexpr int lanes = 8;     ///< doubles of one 512-bit register
 constexpr int registers = 4; ///< groups held in registers at once, to hide the latency of the products
 constexpr int group = lanes * registers;
 
-typedef double Lanes __attribute__((vector_size(lanes * sizeof(double)), aligned(alignof(double)), may_alias));
+/// Loaded and stored by copies: rows begin at any number.
+typedef double Lanes __attribute__((vector_size(lanes * sizeof(double))));
 
 /// Adds exp(i q.r) of all nodes to `sums` ([n3][re, im][lane]) for n3 = 0 .. n_q - 1 steps beyond the phases given.
 BOBA_VECTOR_CLONES void add_phases(const double* phase_re, const double* phase_im, const double* step_re,
@@ -24,15 +26,20 @@ BOBA_VECTOR_CLONES void add_phases(const double* phase_re, const double* phase_i
     Lanes pr[registers], pi[registers], sr[registers], si[registers];
     for (int k = 0; k < registers; ++k) {
       const std::size_t at = node + static_cast<std::size_t>(k) * lanes;
-      pr[k] = *reinterpret_cast<const Lanes*>(phase_re + at);
-      pi[k] = *reinterpret_cast<const Lanes*>(phase_im + at);
-      sr[k] = *reinterpret_cast<const Lanes*>(step_re + at);
-      si[k] = *reinterpret_cast<const Lanes*>(step_im + at);
+      std::memcpy(&pr[k], phase_re + at, sizeof pr[k]);
+      std::memcpy(&pi[k], phase_im + at, sizeof pi[k]);
+      std::memcpy(&sr[k], step_re + at, sizeof sr[k]);
+      std::memcpy(&si[k], step_im + at, sizeof si[k]);
     }
     double* out = sums;
     for (int q = 0; q < n_q; ++q, out += 2 * lanes) {
-      *reinterpret_cast<Lanes*>(out) += (pr[0] + pr[1]) + (pr[2] + pr[3]);
-      *reinterpret_cast<Lanes*>(out + lanes) += (pi[0] + pi[1]) + (pi[2] + pi[3]);
+      Lanes re_sum, im_sum;
+      std::memcpy(&re_sum, out, sizeof re_sum);
+      std::memcpy(&im_sum, out + lanes, sizeof im_sum);
+      re_sum += (pr[0] + pr[1]) + (pr[2] + pr[3]);
+      im_sum += (pi[0] + pi[1]) + (pi[2] + pi[3]);
+      std::memcpy(out, &re_sum, sizeof re_sum);
+      std::memcpy(out + lanes, &im_sum, sizeof im_sum);
 #pragma GCC unroll 4
       for (int k = 0; k < registers; ++k) {
         const Lanes re = pr[k] * sr[k] - pi[k] * si[k];
