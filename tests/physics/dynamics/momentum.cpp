@@ -3,18 +3,22 @@
 #include "bpm/dynamics/stepper.h"
 #include "tests/support/small_packings.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 namespace boba::test {
 namespace {
 
-Vector3 mean_velocity(const Stepper& stepper) {
-  const Snapshot snapshot = stepper.snapshot({.velocity = true});
+Vector3 mean(const std::vector<Vector3>& values) {
   Vector3 sum = Vector3::Zero();
-  for (const Vector3& v : snapshot.velocity) {
-    sum += v;
+  for (const Vector3& value : values) {
+    sum += value;
   }
-  return sum / static_cast<double>(snapshot.velocity.size());
+  return sum / static_cast<double>(values.size());
+}
+
+Vector3 mean_velocity(const Stepper& stepper) {
+  return mean(stepper.snapshot({.velocity = true}).velocity);
 }
 
 Packing dense_grains() {
@@ -28,10 +32,7 @@ TEST(Momentum, OfAPackingInMixedPrecisionStays) {
   for (Vector3& v : packing.velocity) {
     v += Vector3(3e-4, -2e-4, 1e-4);
   }
-  Vector3 before = Vector3::Zero();
-  for (const Vector3& v : packing.velocity) {
-    before += v / static_cast<double>(packing.velocity.size());
-  }
+  const Vector3 before = mean(packing.velocity);
   Stepper stepper(std::move(packing), {}, {.precision = Precision::mixed});
   stepper.start();
   const int n_steps = 64 * 300;
@@ -39,6 +40,42 @@ TEST(Momentum, OfAPackingInMixedPrecisionStays) {
     stepper.advance(step < n_steps ? Virial::none : Virial::full);
   }
   EXPECT_LT((mean_velocity(stepper) - before).norm(), 3e-10);
+}
+
+// A drift of a thousandth of a quantum a step is not lost to rounding.
+TEST(Momentum, SlowDriftInMixedPrecision) {
+  const Packing still = small_packing(
+      {.box = Box({0, 0, 0}, {40, 40, 40}), .n_grains = 3, .jitter = 0.0, .speed = 0.0, .least_distance = 8.0});
+  Packing packing = still;
+  const Vector3 velocity(1e-9, -3e-10, 2e-9);
+  for (Vector3& v : packing.velocity) {
+    v = velocity;
+  }
+  Stepper stepper(packing, {}, {.precision = Precision::mixed});
+  stepper.start();
+  const int n_steps = 20000;
+  for (int step = 0; step < n_steps; ++step) {
+    stepper.advance(step + 1 < n_steps ? Virial::none : Virial::full);
+  }
+  // What is left is a random walk: a node's rounding has at most half a quantum as standard deviation each step.
+  const Snapshot end = stepper.snapshot({.velocity = true});
+  const std::vector<Vector3>& centres = end.grain_centre;
+  const std::vector<std::int64_t> first = packing.first_nodes();
+  const double quantum = std::ldexp(1.0, -27); // of a grain of radius up to 4 d
+  for (int g = 0; g < packing.n_grains(); ++g) {
+    Vector3 before = Vector3::Zero();
+    for (std::int64_t node = first[g]; node < first[g + 1]; ++node) {
+      before += packing.position[node] / static_cast<double>(first[g + 1] - first[g]);
+    }
+    const double walk = 0.5 * quantum * std::sqrt(3.0 * n_steps / static_cast<double>(first[g + 1] - first[g]));
+    EXPECT_LT((centres[g] - before - velocity * stepper.time()).norm(), 3.0 * walk);
+    EXPECT_GT((velocity * stepper.time()).norm(), 10.0 * walk);
+  }
+  double noise = 0.0;
+  for (const Vector3& v : end.velocity) {
+    noise += (v - velocity).squaredNorm() / static_cast<double>(end.velocity.size());
+  }
+  EXPECT_LT(std::sqrt(noise), 3.0 * quantum / stepper.options().dt);
 }
 
 TEST(Momentum, IsTakenByWalls) {

@@ -119,42 +119,6 @@ TEST(Runs, MixedPrecisionFollowsDouble) {
   }
 }
 
-// A drift of a thousandth of a quantum a step is not lost to rounding.
-TEST(Runs, SlowDriftInMixedPrecision) {
-  const Packing still = small_packing(
-      {.box = Box({0, 0, 0}, {40, 40, 40}), .n_grains = 3, .jitter = 0.0, .speed = 0.0, .least_distance = 8.0});
-  Packing packing = still;
-  const Vector3 velocity(1e-9, -3e-10, 2e-9);
-  for (Vector3& v : packing.velocity) {
-    v = velocity;
-  }
-  Stepper stepper(packing, {}, {.precision = Precision::mixed});
-  stepper.start();
-  const int n_steps = 20000;
-  for (int step = 0; step < n_steps; ++step) {
-    stepper.advance(step + 1 < n_steps ? Virial::none : Virial::full);
-  }
-  // What is left is a random walk: a node's rounding has at most half a quantum as standard deviation each step.
-  const Snapshot end = stepper.snapshot({.velocity = true});
-  const std::vector<Vector3>& centres = end.grain_centre;
-  const std::vector<std::int64_t> first = packing.first_nodes();
-  const double quantum = std::ldexp(1.0, -27); // of a grain of radius up to 4 d
-  for (int g = 0; g < packing.n_grains(); ++g) {
-    Vector3 before = Vector3::Zero();
-    for (std::int64_t node = first[g]; node < first[g + 1]; ++node) {
-      before += packing.position[node] / static_cast<double>(first[g + 1] - first[g]);
-    }
-    const double walk = 0.5 * quantum * std::sqrt(3.0 * n_steps / static_cast<double>(first[g + 1] - first[g]));
-    EXPECT_LT((centres[g] - before - velocity * stepper.time()).norm(), 3.0 * walk);
-    EXPECT_GT((velocity * stepper.time()).norm(), 10.0 * walk);
-  }
-  double noise = 0.0;
-  for (const Vector3& v : end.velocity) {
-    noise += (v - velocity).squaredNorm() / static_cast<double>(end.velocity.size());
-  }
-  EXPECT_LT(std::sqrt(noise), 3.0 * quantum / stepper.options().dt);
-}
-
 TEST(Runs, DoNotDependOnWhoIsWatching) {
   expect_same_bits(sheared(2), sheared(2, 7));
 }
