@@ -157,7 +157,7 @@ std::vector<BlockMotion> ForceField::drift(LaneState& state, kernels::Drift drif
 
 void ForceField::evaluate_part(const Part& part, LaneState& state, const Box& box, const Evaluation& what) {
   const double start = omp_get_wtime();
-  double kicked = start;
+  double kicked = 0.0;
   const int n_pieces = pieces_of(static_cast<int>(part.blocks.size()), omp_get_max_threads());
   const bool split = n_pieces > 1 && can_split(part.blocks);
 #pragma omp parallel

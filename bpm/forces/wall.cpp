@@ -8,7 +8,7 @@
 namespace boba {
 
 double add_wall_forces(const Wall& wall, const Material& material, const LaneLayout& layout, int grain,
-                       const LaneState& state, LaneForce f, bool with_sums, kernels::ContactSums& sums) {
+                       const LaneState& state, const LaneForce& f, bool with_sums, kernels::ContactSums& sums) {
   const double reach = 0.5 * material.diameter;
   double total = 0.0;
   for (int node = 0; node < layout.n_nodes(grain); ++node) {

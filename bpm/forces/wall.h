@@ -25,6 +25,6 @@ using LaneForce = std::function<void(int node, const Vector3& force)>;
 /// Hands one wall's forces on one grain to `f` and returns their sum along the normal. The virial (position of the
 /// contact plane times force) goes to the sums when asked for.
 double add_wall_forces(const Wall& wall, const Material& material, const LaneLayout& layout, int grain,
-                       const LaneState& state, LaneForce f, bool with_sums, kernels::ContactSums& sums);
+                       const LaneState& state, const LaneForce& f, bool with_sums, kernels::ContactSums& sums);
 
 } // namespace boba

@@ -62,7 +62,7 @@ private:
     for (std::size_t i = 0; i < x.size(); ++i) {
       for (std::size_t j = i + 1; j < x.size(); ++j) {
         for (int image = 0; image < 27; ++image) {
-          const Vector3 shift(image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1);
+          const Vector3 shift = Eigen::Vector3i(image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1).cast<double>();
           push_pair(i, j, x[i] - x[j] + edge_ * shift, move);
         }
       }

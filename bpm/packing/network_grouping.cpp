@@ -92,6 +92,7 @@ std::vector<FileGrain> split_into_grains(const BondedNodes& nodes) {
     grain.rows.push_back(row);
   }
   std::vector<FileGrain> list;
+  list.reserve(grains.size());
   for (auto& [number, grain] : grains) {
     list.push_back(std::move(grain));
   }

@@ -13,6 +13,7 @@ std::vector<std::int64_t> Packing::first_nodes() const {
 
 std::vector<int> Packing::nodes_of_grains() const {
   std::vector<int> n_nodes;
+  n_nodes.reserve(static_cast<std::size_t>(n_grains()));
   for (int g = 0; g < n_grains(); ++g) {
     n_nodes.push_back(template_of(g).n_nodes());
   }

@@ -34,7 +34,7 @@ MessagePassing::MessagePassing() {
     started_ = true;
     ranks_ = Ranks::of_world();
     const char* started = std::getenv("PMI_SIZE");
-    if (!ranks_.many() && started != nullptr && std::atoi(started) > 1) {
+    if (!ranks_.many() && started != nullptr && std::strtol(started, nullptr, 10) > 1) {
       throw std::invalid_argument("started several times by a launcher that MPI does not know; use mpirun, or srun --mpi=pmix");
     }
   }
