@@ -73,9 +73,10 @@ void ContactList::find_ghosts() {
   const int n_own = static_cast<int>(layout_.grains().size());
   ghost_forest_ = make_star_forest(n_own, all);
   const std::unique_ptr<StarForest> asking = make_star_forest(n_own, fresh);
-  const std::span<const int> degrees = asking->degrees();
   wanted_.assign(n_own, 0);
-  std::transform(degrees.begin(), degrees.end(), wanted_.begin(), [](int degree) { return degree > 0 ? 1 : 0; });
+  for (const int k : asking->wanted()) {
+    wanted_[k] = 1;
+  }
 }
 
 /// Brings frames, strays and places of the ghosts up to what their owners have just found.

@@ -33,17 +33,15 @@ void ContactHalo::rebuild(const ContactList& list, const LaneLayout& layout, con
   ++traffic_.rebuilds;
 
   // Both sides search by the same rules but from grids of different age: others may list nodes that we do not.
-  const std::span<const int> degrees = forest_->degrees();
+  const std::vector<int> wanted = forest_->wanted();
   std::vector<std::vector<std::int32_t>>& nodes = which == Nodes::listed ? listed_ : near_;
   nodes.assign(layout.n_grains(), {});
   std::vector<std::int32_t> asked;
   for (const int g : layout.grains()) {
     asked.clear();
-    const std::span<const int> of_grain = degrees.subspan(ownership.first_node(g), layout.n_nodes(g));
-    for (std::size_t node = 0; node < of_grain.size(); ++node) {
-      if (of_grain[node] > 0) {
-        asked.push_back(static_cast<std::int32_t>(node));
-      }
+    const std::int64_t first = ownership.first_node(g), end = first + layout.n_nodes(g);
+    for (auto next = std::lower_bound(wanted.begin(), wanted.end(), first); next != wanted.end() && *next < end; ++next) {
+      asked.push_back(static_cast<std::int32_t>(*next - first));
     }
     const std::span<const std::int32_t> own = nodes_here(g);
     std::set_union(own.begin(), own.end(), asked.begin(), asked.end(), std::back_inserter(nodes[g]));

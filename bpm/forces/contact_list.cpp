@@ -109,8 +109,10 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
     grain.moved.clear();
     grain.moved_to.clear();
   }
-  followed_guaranteed_ = distribution_.ranks->smallest(followed_guarantee());
-  guaranteed_ = std::min(distribution_.ranks->smallest(guaranteed), followed_guaranteed_);
+  double lost[2] = {-followed_guarantee(), -guaranteed};
+  distribution_.ranks->largest(lost);
+  followed_guaranteed_ = -lost[0];
+  guaranteed_ = -std::max(lost[0], lost[1]);
   crept_ = 0.0;
   crept_followed_ = 0.0;
   cell_since_tracking_ = Matrix3::Identity();

@@ -4,6 +4,7 @@
 
 #include <petscsf.h>
 
+#include <algorithm>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -47,7 +48,6 @@ public:
                           PETSC_OWN_POINTER),
           "describing its graph");
     check(PetscSFSetUp(forest_), "setting it up");
-    n_roots_ = n_roots;
   }
   PetscStarForest(const PetscStarForest&) = delete;
   PetscStarForest& operator=(const PetscStarForest&) = delete;
@@ -66,11 +66,18 @@ public:
     check(PetscSFReduceBegin(forest_, item_type(bytes), leaves, roots, MPI_REPLACE), "beginning to collect");
     check(PetscSFReduceEnd(forest_, item_type(bytes), leaves, roots, MPI_REPLACE), "collecting");
   }
-  std::span<const int> degrees() override {
-    const PetscInt* degrees = nullptr;
-    check(PetscSFComputeDegreeBegin(forest_, &degrees), "counting leaves");
-    check(PetscSFComputeDegreeEnd(forest_, &degrees), "counting leaves");
-    return {degrees, static_cast<std::size_t>(n_roots_)};
+  std::vector<int> wanted() const override {
+    PetscInt n_ranks = 0;
+    const PetscMPIInt* ranks = nullptr;
+    const PetscInt *first = nullptr, *roots = nullptr;
+    check(PetscSFGetLeafRanks(forest_, &n_ranks, &ranks, &first, &roots), "looking at its leaves");
+    if (n_ranks == 0) {
+      return {};
+    }
+    std::vector<int> wanted(roots + first[0], roots + first[n_ranks]);
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    return wanted;
   }
   Traffic incoming() const override {
     PetscInt n_ranks = 0;
@@ -91,7 +98,6 @@ public:
 
 private:
   PetscSF forest_ = nullptr;
-  int n_roots_ = 0;
   std::size_t bytes_ = 0;
   const void* roots_ = nullptr;
   void* leaves_ = nullptr;

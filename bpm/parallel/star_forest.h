@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace boba {
 
@@ -25,8 +26,8 @@ public:
   virtual void end() = 0;
   /// Leaves to roots: each root takes the value of one of its leaves; roots without leaves keep theirs.
   virtual void collect(std::size_t bytes, const void* leaves, void* roots) = 0;
-  /// Per root: how many leaves it has, those of this rank included.
-  virtual std::span<const int> degrees() = 0;
+  /// Roots of this rank that have a leaf anywhere, ascending.
+  virtual std::vector<int> wanted() const = 0;
   /// Messages that this rank receives and items in them, at each begin/end; its own leaves are none.
   struct Traffic {
     std::int64_t messages = 0, items = 0;
