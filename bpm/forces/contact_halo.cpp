@@ -40,7 +40,8 @@ void ContactHalo::rebuild(const ContactList& list, const LaneLayout& layout, con
   for (const int g : layout.grains()) {
     asked.clear();
     const std::int64_t first = ownership.first_node(g), end = first + layout.n_nodes(g);
-    for (auto next = std::lower_bound(wanted.begin(), wanted.end(), first); next != wanted.end() && *next < end; ++next) {
+    for (auto next = std::lower_bound(wanted.begin(), wanted.end(), first); next != wanted.end() && *next < end;
+         ++next) {
       asked.push_back(static_cast<std::int32_t>(*next - first));
     }
     const std::span<const std::int32_t> own = nodes_here(g);

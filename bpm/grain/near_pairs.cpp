@@ -102,7 +102,7 @@ private:
 std::array<Vector3d, 27> image_shifts(const Vector3d& period) {
   std::array<Vector3d, 27> shifts;
   for (int s = 0; s < 27; ++s) {
-    shifts[s] = period.cwiseProduct(Vector3d(s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1));
+    shifts[s] = period.cwiseProduct(Vector3i(s % 3 - 1, s / 3 % 3 - 1, s / 9 - 1).cast<double>());
   }
   return shifts;
 }

@@ -221,7 +221,7 @@ void remove_older(const std::filesystem::path& directory, int keep) {
 std::filesystem::path write_checkpoint(const std::filesystem::path& directory, const CheckpointData& data, int keep) {
   const std::vector<NumberedFile> before = checkpoints_in(directory);
   const std::uint64_t number = before.empty() ? 1 : before.front().number + 1;
-  const std::filesystem::path path = directory / fmt::format("{}{:06}{}", stem, number, ending);
+  std::filesystem::path path = directory / fmt::format("{}{:06}{}", stem, number, ending);
   const std::filesystem::path beside = path.string() + ".part";
   try {
     std::filesystem::create_directories(directory);

@@ -43,20 +43,20 @@ std::size_t kept_length(const std::string& text, std::int64_t last_step) {
 
 } // namespace
 
-TableWriter::TableWriter(const std::filesystem::path& path, std::vector<std::string> columns, FileMode mode)
+TableWriter::TableWriter(const std::filesystem::path& path, const std::vector<std::string>& columns, FileMode mode)
     : file_((header_of(columns), path), mode), n_columns_(columns.size()) {
   file_.write(header_of(columns));
 }
 
 TableWriter::TableWriter(OutputFile file, std::size_t n_columns) : file_(std::move(file)), n_columns_(n_columns) {}
 
-TableWriter TableWriter::go_on(const std::filesystem::path& path, std::vector<std::string> columns,
+TableWriter TableWriter::go_on(const std::filesystem::path& path, const std::vector<std::string>& columns,
                                std::int64_t last_step) {
   const std::string header = header_of(columns);
   std::ifstream in(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   if (header.starts_with(text)) { // missing, empty, or killed while its first line was written
-    return TableWriter(path, std::move(columns), FileMode::overwrite);
+    return TableWriter(path, columns, FileMode::overwrite);
   }
   if (!text.starts_with(header)) {
     throw std::runtime_error(fmt::format("{}: begins with '{}'; a table to go on with begins with '{}'", path.string(),

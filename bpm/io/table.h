@@ -20,10 +20,12 @@ class TableWriter {
 public:
   /// \throws std::runtime_error when the file exists (FileMode::create) or cannot be written;
   /// std::invalid_argument when there is no column or a name holds a comma, a quote or a line end.
-  TableWriter(const std::filesystem::path& path, std::vector<std::string> columns, FileMode mode = FileMode::create);
+  TableWriter(const std::filesystem::path& path, const std::vector<std::string>& columns,
+              FileMode mode = FileMode::create);
   /// Goes on after the last row whose step is `last_step` or earlier; later rows and a torn one are removed. A missing
   /// file is begun anew. \throws std::runtime_error when the file has other columns.
-  static TableWriter go_on(const std::filesystem::path& path, std::vector<std::string> columns, std::int64_t last_step);
+  static TableWriter go_on(const std::filesystem::path& path, const std::vector<std::string>& columns,
+                           std::int64_t last_step);
 
   /// One row; as many values as there are columns behind the step. \throws std::invalid_argument for another number.
   void write(std::int64_t step, std::span<const std::optional<double>> values);

@@ -4,8 +4,9 @@
 #include "bpm/io/line_reader.h"
 
 #include <bit>
-#include <cstdio>
+#include <charconv>
 #include <fmt/format.h>
+#include <regex>
 
 namespace boba {
 
@@ -17,7 +18,7 @@ static_assert(std::endian::native == std::endian::little, "the header says Littl
 class AppendedArrays {
 public:
   template <typename T> std::string add(const char* type, const char* name, int components, std::vector<T> values) {
-    const std::string element =
+    std::string element =
         fmt::format("        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
                     "offset=\"{}\"/>\n",
                     type, name, components, bytes_.size());
@@ -89,6 +90,12 @@ std::string frame_name(const std::filesystem::path& pvd, std::int64_t step) {
   return fmt::format("{}_{}.vtp", pvd.stem().string(), step);
 }
 
+/// True when the whole text is one number, which it then puts into `value`.
+template <typename T> bool is_number(const std::string& text, T& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
 } // namespace
 
 void write_vtp(const std::filesystem::path& path, const Topology& topology, const Snapshot& snapshot, FileMode mode) {
@@ -122,6 +129,7 @@ VtkSeries VtkSeries::go_on(const std::filesystem::path& pvd, std::int64_t last_s
   if (!std::filesystem::exists(pvd)) {
     return series;
   }
+  const std::regex frame_line("\\s*<DataSet timestep=\"([^\"]*)\" name=\"([^\"]*)\" file=\"([^\"]*)\"/>\\s*");
   LineReader lines(pvd);
   while (lines.next()) {
     const std::string line(lines.line());
@@ -129,15 +137,12 @@ VtkSeries VtkSeries::go_on(const std::filesystem::path& pvd, std::int64_t last_s
       continue;
     }
     Frame frame;
-    long long step = 0;
-    char file[1024] = "";
-    if (std::sscanf(line.c_str(), " <DataSet timestep=\"%lf\" name=\"%lld\" file=\"%1023[^\"]\"", &frame.time, &step,
-                    file) != 3 ||
-        file != frame_name(pvd, step)) {
+    std::smatch part;
+    if (!std::regex_match(line, part, frame_line) || !is_number(part[1], frame.time) ||
+        !is_number(part[2], frame.step) || part[3] != frame_name(pvd, frame.step)) {
       lines.fail("not a line of a list of frames written by Boba");
     }
-    frame.step = step;
-    frame.file = file;
+    frame.file = part[3];
     if (frame.step <= last_step) {
       series.frames_.push_back(frame);
     } else {

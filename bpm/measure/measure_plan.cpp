@@ -25,6 +25,7 @@ constexpr std::array<std::pair<const char*, MeasureKind>, 7> kinds = {{
 
 std::vector<std::string> measure_names() {
   std::vector<std::string> names;
+  names.reserve(kinds.size());
   for (const auto& [name, kind] : kinds) {
     names.emplace_back(name);
   }

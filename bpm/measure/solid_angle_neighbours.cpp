@@ -69,12 +69,14 @@ NeighbourLists solid_angle_neighbours(const Box& box, std::span<const Vector3> c
   for (std::size_t grain = 0; grain < centres.size(); ++grain) {
     std::vector<Candidate> sorted;
     std::size_t m = 0;
-    for (double reach = 2.0 * spacing; m == 0; reach *= 1.5) {
+    double reach = 2.0 * spacing;
+    while (m == 0) {
       if (reach > 10.0 * span) {
         throw std::invalid_argument(fmt::format("neighbours: grain {} has no four grains around it", grain));
       }
       sorted = candidates_within(grid, wrapped, static_cast<int>(grain), reach);
       m = solid_angle_number(sorted, reach);
+      reach *= 1.5;
     }
     for (std::size_t k = 0; k < m; ++k) {
       lists[grain].push_back({sorted[k].grain, sorted[k].vector, 1.0});

@@ -70,7 +70,7 @@ Vector3 image_across(const Box& box, const Vector3& between, double radius_i, do
   Vector3 best = nearest;
   double best_misfit = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 125; ++k) {
-    const Vector3 vector = nearest + box.h() * Vector3(k % 5 - 2, k / 5 % 5 - 2, k / 25 - 2);
+    const Vector3 vector = nearest + box.h() * Eigen::Vector3i(k % 5 - 2, k / 5 % 5 - 2, k / 25 - 2).cast<double>();
     const double r = vector.norm();
     if (r == 0.0) {
       continue;

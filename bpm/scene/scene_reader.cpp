@@ -210,7 +210,7 @@ void read_species(const SceneTables& tables, Scene& scene) {
 }
 
 std::filesystem::path input_file(const SceneTable& table, const std::string& key, const Scene& scene, bool must_exist) {
-  const std::filesystem::path path = scene.path.parent_path() / table.text(key, "");
+  std::filesystem::path path = scene.path.parent_path() / table.text(key, "");
   std::error_code error;
   if (must_exist && !std::filesystem::is_regular_file(path, error)) {
     table.fail(key, fmt::format("there is no such file ({})", path.lexically_normal().string()));
