@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path program() {
-  const fs::path path = fs::read_symlink("/proc/self/exe").parent_path() / "boba-continuum";
+  fs::path path = fs::read_symlink("/proc/self/exe").parent_path() / "boba-continuum";
   if (!fs::exists(path)) {
     throw std::runtime_error(
         fmt::format("{}: there is no such program; build the target boba-continuum", path.string()));

@@ -67,7 +67,9 @@ std::vector<SlabState> press_slab(const GrainTemplate& box, double alpha, double
   const double body = box.period->z() * stiffness_of(slab) / stiffness_of(box);
   std::vector<SlabState> states;
   std::vector<Vector3> before = network.position();
-  for (double gap = box.period->z() + 1.0 - step;; gap -= step) {
+  double gap = box.period->z() + 1.0;
+  do {
+    gap -= step;
     network.set_walls(-0.5 * gap, 0.5 * gap);
     // On as it went: half of Newton's steps are saved.
     std::vector<Vector3> ahead = network.position();
@@ -79,14 +81,11 @@ std::vector<SlabState> press_slab(const GrainTemplate& box, double alpha, double
     network.relax(tolerance);
     const auto load = network.wall_loads();
     states.push_back({0.5 * (load[0] + load[1]) / area, gap, 1.0, body});
-    if (states.back().pressure >= largest_pressure) {
-      break;
-    }
-    if (gap < 0.5 * box.period->z()) {
+    if (states.back().pressure < largest_pressure && gap < 0.5 * box.period->z()) {
       throw std::runtime_error(
           fmt::format("a slab of {:.3g} d does not carry {} k/d", box.period->z(), largest_pressure));
     }
-  }
+  } while (states.back().pressure < largest_pressure);
   add_bulk_stretch(box, alpha, states);
   return states;
 }
