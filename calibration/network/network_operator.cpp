@@ -134,7 +134,7 @@ NetworkOperator::NetworkOperator(const LinearNetwork& network)
   NullSpace near_null_space; // multigrid wants the rotations too, though a periodic network has none
   check(MatNullSpaceCreateRigidBody(x, near_null_space.address()), "MatNullSpaceCreateRigidBody");
   check(MatSetNearNullSpace(pair_, near_null_space), "MatSetNearNullSpace");
-  for (const Mat matrix : {static_cast<Mat>(shell_), static_cast<Mat>(pair_)}) {
+  for (Mat matrix : {static_cast<Mat>(shell_), static_cast<Mat>(pair_)}) {
     check(MatSetNullSpace(matrix, null_space_), "MatSetNullSpace");
     check(MatSetTransposeNullSpace(matrix, null_space_), "MatSetTransposeNullSpace");
   }

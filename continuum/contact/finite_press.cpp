@@ -133,7 +133,8 @@ bool FinitePress::newton(double plate, const InterfaceLaw& interface, PressState
   for (int step = 0; step < max_newton; ++step) {
     const PressState next = full_step(plate, interface, state);
     double share = 1;
-    for (;; share /= 2) {
+    for (int halvings = 0;; ++halvings) {
+      share = std::ldexp(1.0, -halvings);
       if (share < shortest_step) {
         return false;
       }
