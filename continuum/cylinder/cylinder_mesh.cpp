@@ -13,13 +13,14 @@ namespace {
 std::vector<double> graded_steps(double length, double last) {
   constexpr double factor = 1.6;
   std::vector<double> steps;
-  double sum = 0;
-  for (double step = std::min(last, length); sum < length * (1 - 1e-12); step *= factor) {
+  double sum = 0, step = std::min(last, length);
+  while (sum < length * (1 - 1e-12)) {
     steps.push_back(step);
     sum += step;
+    step *= factor;
   }
-  for (double& step : steps) {
-    step *= length / sum;
+  for (double& scaled : steps) {
+    scaled *= length / sum;
   }
   std::reverse(steps.begin(), steps.end());
   return steps;

@@ -220,13 +220,13 @@ std::vector<GradientPoint> MeridianBody::gradients(const Eigen::VectorXd& u) con
   return result;
 }
 
-Eigen::VectorXd MeridianBody::condensed(Eigen::VectorXd force) const {
+Eigen::VectorXd MeridianBody::condensed(const Eigen::VectorXd& force) const {
   auto values = to_dealii(force);
   parts_->constraints.condense(values);
   return to_eigen(values);
 }
 
-Eigen::VectorXd MeridianBody::distributed(Eigen::VectorXd u) const {
+Eigen::VectorXd MeridianBody::distributed(const Eigen::VectorXd& u) const {
   auto values = to_dealii(u);
   parts_->constraints.distribute(values);
   return to_eigen(values);

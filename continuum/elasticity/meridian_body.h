@@ -93,9 +93,9 @@ public:
   Eigen::VectorXd internal_force(const Material& material, const Eigen::VectorXd& u) const;
 
   /// Moves the forces on hanging nodes to their masters and drops those on held ones, in place of the constrained rows.
-  Eigen::VectorXd condensed(Eigen::VectorXd force) const;
+  Eigen::VectorXd condensed(const Eigen::VectorXd& force) const;
   /// Fills hanging nodes from their masters and zeroes the held ones.
-  Eigen::VectorXd distributed(Eigen::VectorXd u) const;
+  Eigen::VectorXd distributed(const Eigen::VectorXd& u) const;
   /// The displacement that equals value(r, z) = {u_r, u_z} on the held boundary and 0 elsewhere.
   Eigen::VectorXd lifted(const std::function<Eigen::Vector2d(double, double)>& value) const;
   /// Nodal interpolation of a displacement field.

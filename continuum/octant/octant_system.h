@@ -59,7 +59,7 @@ public:
     }
   }
 
-  const MPI_Comm communicator = MPI_COMM_WORLD;
+  MPI_Comm communicator = MPI_COMM_WORLD;
   OctantShape shape;
   OctantMesh mesh;
   dealii::FESystem<3> element;
