@@ -62,6 +62,7 @@ void conservation(const Folder& folder);
 void rounding(const Folder& folder);
 void rest(const Folder& folder);
 void rest_mixed(const Folder& folder);
+void long_shear(const Folder& folder);
 void barostat(const Folder& folder);
 
 } // namespace boba::bench

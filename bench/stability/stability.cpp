@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
                              Sweep{"rounding", "error growth against a more precise twin", rounding},
                              Sweep{"rest", "1e7 steps of a packing at rest", rest},
                              Sweep{"rest_mixed", "the same in mixed precision", rest_mixed},
+                             Sweep{"long_shear", "1e6 steps of shear in double and mixed precision", long_shear},
                              Sweep{"barostat", "gain scan, step response, deviation under shear", barostat}}) {
     CLI::App* command = app.add_subcommand(sweep.name, sweep.what);
     command->add_option("--output", folder, "folder for the tables")->capture_default_str();
