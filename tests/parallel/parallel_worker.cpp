@@ -3,6 +3,7 @@
 // Usage: parallel_worker CASE FILE [STATE]
 #include "bpm/dynamics/simulation.h"
 #include "bpm/dynamics/stepper.h"
+#include "bpm/measure/scattering.h"
 #include "bpm/parallel/dealt_items.h"
 #include "bpm/parallel/message_passing.h"
 #include "tests/support/small_packings.h"
@@ -204,6 +205,27 @@ void run_dealt(const Ranks& ranks, Bits& bits) {
   }
 }
 
+/// S(q) by both ways: every rank has what rank 0 has.
+void run_scattering(const Ranks& ranks, Bits& bits) {
+  const Packing packing = twenty_grains();
+  const std::vector<std::int64_t> first_node = packing.first_nodes();
+  const measure::GrainNodes grains(packing.position, first_node);
+  const measure::ReciprocalLattice lattice(packing.box, 3.0);
+  for (const auto& amplitudes : {measure::transformed_amplitudes(packing.box, grains, lattice, ranks),
+                                 measure::summed_amplitudes(packing.box, grains, lattice, ranks)}) {
+    for (const std::vector<double>& values : {amplitudes.intensity, amplitudes.form_factor}) {
+      std::vector<double> of_root = values;
+      ranks.broadcast(of_root);
+      if (of_root != values) {
+        throw std::runtime_error(fmt::format("rank {} has other amplitudes than rank 0", ranks.rank()));
+      }
+      for (const double value : values) {
+        bits.add("amplitude", value);
+      }
+    }
+  }
+}
+
 /// A node that flies off: all ranks hear of it.
 void run_blow_up(const Ranks& ranks) {
   Packing packing = twenty_grains();
@@ -221,6 +243,8 @@ int work(int argc, char** argv, const Ranks& ranks) {
     run_blow_up(ranks);
   } else if (name == "dealt") {
     run_dealt(ranks, bits);
+  } else if (name == "scattering") {
+    run_scattering(ranks, bits);
   } else {
     run_case(name, ranks, bits);
   }
