@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Time of a step of a dense shear on the ranks it is started on, what the ranks tell each other, and what they would on
-// more; time of measuring a frame. Prints one line of JSON. The packing is that of bench_engine, 16 grains of 5137 nodes, repeated.
+// more; time of measuring a frame. Prints one line of JSON. The packing is that of bench_engine, 16 grains of 5137
+// nodes, repeated.
 #include "bench/engine/dense_packing.h"
 #include "bench/scaling/count_halo.h"
 #include "bench/scaling/processor_time.h"
@@ -10,9 +11,8 @@
 #include "bpm/parallel/share_packing.h"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
-
 #include <chrono>
+#include <fmt/format.h>
 
 namespace boba::bench {
 namespace {

@@ -69,9 +69,8 @@ std::shared_ptr<MeasureTables> measure_tables(const RunSetup& setup, const Simul
                                               const MeasurePlan& plan, std::int64_t last_step) {
   const Packing& packing = simulation.packing();
   const FileMode mode = setup.restart ? FileMode::append : FileMode::create;
-  auto tables =
-      std::make_shared<MeasureTables>(setup.folder.measures(), packing.topology(false), plan,
-                                      undeformed_grains(packing), mode, last_step, simulation.ranks());
+  auto tables = std::make_shared<MeasureTables>(setup.folder.measures(), packing.topology(false), plan,
+                                                undeformed_grains(packing), mode, last_step, simulation.ranks());
   if (setup.restart && simulation.ranks().is_root() && plan.has(MeasureKind::motion)) {
     tables->restore_motion(setup.restart->motion);
   }
@@ -93,7 +92,8 @@ void follow_writers(RunWriters& writers, const RunSetup& setup, const MakeSchedu
 
 /// The measures, which all ranks take together.
 template <class MakeSchedule>
-void add_measures(RunWriters& writers, const RunSetup& setup, const Simulation& simulation, const MakeSchedule& schedule) {
+void add_measures(RunWriters& writers, const RunSetup& setup, const Simulation& simulation,
+                  const MakeSchedule& schedule) {
   for (const SceneMeasure& entry : setup.scene.measures) {
     const std::int64_t last_step = last_step_of(setup, writers.frames.size() + 1);
     const auto tables = measure_tables(setup, simulation, entry.plan, last_step);

@@ -38,9 +38,7 @@ struct MeasurePlan {
     return has(MeasureKind::shape) || has(MeasureKind::packing_fraction) || needs_hull_radii();
   }
   /// Something is measured that takes long, so that all ranks do a share of it and need the nodes.
-  bool needs_all_ranks() const {
-    return needs_hulls() || has(MeasureKind::scattering) || has(MeasureKind::contacts);
-  }
+  bool needs_all_ranks() const { return needs_hulls() || has(MeasureKind::scattering) || has(MeasureKind::contacts); }
 };
 
 /// The names that the command line and scenes use: stress, packing-fraction, shape, scattering, order, contacts,

@@ -37,10 +37,9 @@ struct PackingFraction {
 /// phi = n_hit / n; its standard error is sqrt(p (1 - p) / n) with p = (n_hit + 1) / (n + 2), which does not vanish
 /// when all points hit. Point i of a seed is the same on any number of threads and ranks, hence so is the result.
 /// \param hulls one a grain, in unwrapped coordinates like the nodes; or none at all, which leaves the nodes
-/// \param ranks collective: all call it alike, each looks at what its own grains hit (DealtItems), of which alone it needs
-/// the hulls, and all have the result
-/// \throws std::invalid_argument for options out of range or a wrong number of hulls.
-/// Source: docs/notation.md, "packing fraction".
+/// \param ranks collective: all call it alike, each looks at what its own grains hit (DealtItems), of which alone it
+/// needs the hulls, and all have the result \throws std::invalid_argument for options out of range or a wrong number of
+/// hulls. Source: docs/notation.md, "packing fraction".
 PackingFraction packing_fraction(const Box& box, const GrainNodes& grains, std::span<const ConvexHull> hulls,
                                  const PackingFractionOptions& options = {}, const Ranks& ranks = Ranks::alone());
 

@@ -171,7 +171,8 @@ ScatteringAmplitudes transformed_amplitudes(const Box& box, const GrainNodes& gr
       n_nodes[g] = static_cast<double>(grains.nodes_of(begin + g).size());
     }
     const DealtItems items(ranks, n);
-    parallel_loop(items, [&](std::int64_t g) { blocks[g] = plan.spread(grains.nodes_of(begin + static_cast<int>(g))); });
+    parallel_loop(items,
+                  [&](std::int64_t g) { blocks[g] = plan.spread(grains.nodes_of(begin + static_cast<int>(g))); });
     share_blocks(items, blocks);
     parallel_loop(slab_items, [&](std::int64_t i) {
       const RowRange& range = ranges[i];

@@ -29,12 +29,13 @@ struct ScatteringAmplitudes {
 };
 
 /// Sums at every wave vector of the half lattice, by whichever of the two ways takes fewer products: the non-uniform
-/// transform of each grain (`SpectrumPlan`, relative error 1e-10), or for small grains and few wave vectors the exact sums.
+/// transform of each grain (`SpectrumPlan`, relative error 1e-10), or for small grains and few wave vectors the exact
+/// sums.
 ///
 /// Grains are summed in their order: the result does not depend on the number of threads and ranks.
-/// \param ranks collective: all call it alike with all nodes, each sums at its own wave vectors (DealtItems), and all have
-/// the result; so with everything below
-/// Source: docs/notation.md, "form factor"; "scattering, structure factor"; docs/performance-measure.md.
+/// \param ranks collective: all call it alike with all nodes, each sums at its own wave vectors (DealtItems), and all
+/// have the result; so with everything below Source: docs/notation.md, "form factor"; "scattering, structure factor";
+/// docs/performance-measure.md.
 ScatteringAmplitudes scattering_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice,
                                            const Ranks& ranks = Ranks::alone());
 

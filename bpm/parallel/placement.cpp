@@ -144,11 +144,8 @@ Distribution distribute(const Packing& packing, const Ranks& ranks, Precision pr
     return {};
   }
   const std::vector<int> n_nodes = packing.nodes_of_grains();
-  const PlacementInput input = {&packing,
-                                ranks.size(),
-                                lanes_of_block(precision),
-                                fractional_centres(packing),
-                                {n_nodes.begin(), n_nodes.end()}};
+  const PlacementInput input = {
+      &packing, ranks.size(), lanes_of_block(precision), fractional_centres(packing), {n_nodes.begin(), n_nodes.end()}};
   return {&ranks, Ownership(place_grains(input), ranks.size(), n_nodes)};
 }
 

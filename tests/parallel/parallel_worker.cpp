@@ -8,10 +8,9 @@
 #include "bpm/parallel/message_passing.h"
 #include "tests/support/small_packings.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <cstdio>
+#include <fmt/format.h>
 #include <map>
 #include <random>
 #include <string>

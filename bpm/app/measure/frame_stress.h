@@ -27,8 +27,9 @@ public:
   FrameStress(Packing packing, const Material& material, double dt, const Ranks& ranks = Ranks::alone());
   ~FrameStress();
 
-  /// Each grain's part times the frame's volume, xx yy zz xy xz yz, tension positive, k d. Collective: all ranks are given
-  /// the whole frame and have all grains' parts.
+  /// Each grain's part times the frame's volume, xx yy zz xy xz yz, tension positive, k d. Collective: all ranks are
+  /// given the whole frame and have all grains' parts.
+  ///
   /// \throws std::invalid_argument for a frame of another packing.
   std::vector<std::array<double, 6>> evaluate(const Snapshot& snapshot);
 

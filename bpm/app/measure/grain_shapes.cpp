@@ -14,7 +14,8 @@ FacetSummary summary_of(const measure::Facets& facets) {
   return {facets.n_facets(), facets.faceted_share()};
 }
 
-GrainShape grain_shape(const measure::ConvexHull& hull, const measure::FacetOptions& options, std::vector<Facet>* facets) {
+GrainShape grain_shape(const measure::ConvexHull& hull, const measure::FacetOptions& options,
+                       std::vector<Facet>* facets) {
   const measure::Facets grown = measure::grown_facets(hull, options);
   for (int f = 0; facets != nullptr && f < grown.n_facets(); ++f) {
     facets->push_back({grown.area[f], grown.normal[f]});

@@ -147,7 +147,8 @@ double MeasureTables::grain_number(int grain) const {
 }
 
 void MeasureTables::add(const Snapshot& snapshot) {
-  Frame frame{snapshot, measure_together(snapshot.box, snapshot.position, topology_.first_node, plan_, ranks_), {}, {}, {}};
+  Frame frame{
+      snapshot, measure_together(snapshot.box, snapshot.position, topology_.first_node, plan_, ranks_), {}, {}, {}};
   if (plan_.has(MeasureKind::stress)) {
     frame.grain_stress = frame_stress_ ? frame_stress_->evaluate(snapshot) : snapshot.grain_stress;
   }

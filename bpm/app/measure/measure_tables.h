@@ -4,8 +4,8 @@
 #include "bpm/app/measure/frame_measures.h"
 #include "bpm/app/measure/frame_stress.h"
 #include "bpm/app/measure/grain_shapes.h"
-#include "bpm/measure/measure_plan.h"
 #include "bpm/io/table.h"
+#include "bpm/measure/measure_plan.h"
 #include "bpm/measure/non_affine.h"
 #include "bpm/measure/stress.h"
 
@@ -19,23 +19,24 @@ namespace boba {
 
 /// Measures frames and writes what was found into the tables of one folder.
 ///
-/// Tables, columns and units: docs/formats-measure.md. Frames are given in the order of time. With several ranks all have
-/// one alike: what takes long they measure together (measure_together), the rest and the tables are rank 0's.
+/// Tables, columns and units: docs/formats-measure.md. Frames are given in the order of time. With several ranks all
+/// have one alike: what takes long they measure together (measure_together), the rest and the tables are rank 0's.
 class MeasureTables {
 public:
   /// \param last_step with FileMode::append: rows after this step are removed, and the tables go on
   /// \param ranks must outlive this
   /// \throws std::runtime_error when a table exists (FileMode::create) or cannot be written.
-  MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan, const UndeformedGrains& undeformed,
-                FileMode mode, std::int64_t last_step = -1, const Ranks& ranks = Ranks::alone());
+  MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan,
+                const UndeformedGrains& undeformed, FileMode mode, std::int64_t last_step = -1,
+                const Ranks& ranks = Ranks::alone());
 
   /// Collective. Positions are needed on every rank when the plan needs_all_ranks, all else on rank 0.
-  /// \throws std::invalid_argument for a frame that cannot be measured, std::runtime_error when a table cannot be written;
-  /// RankError on all when there are several ranks.
+  /// \throws std::invalid_argument for a frame that cannot be measured, std::runtime_error when a table cannot be
+  /// written; RankError on all when there are several ranks.
   void add(const Snapshot& snapshot);
 
-  /// Forces evaluated anew: used for the stress instead of what the frames hold. Null: what the frames hold. With several
-  /// ranks all are given one, and every frame whole.
+  /// Forces evaluated anew: used for the stress instead of what the frames hold. Null: what the frames hold. With
+  /// several ranks all are given one, and every frame whole.
   void set_frame_stress(std::shared_ptr<FrameStress> stress) { frame_stress_ = std::move(stress); }
 
   /// What `motion` remembers of the frames so far, so that a run that goes on continues its tables.
