@@ -38,8 +38,9 @@ struct PackingFraction {
 /// when all points hit. Point i of a seed is the same on any number of threads and ranks, hence so is the result.
 /// \param hulls one a grain, in unwrapped coordinates like the nodes; or none at all, which leaves the nodes
 /// \param ranks collective: all call it alike, each looks at what its own grains hit (DealtItems), of which alone it
-/// needs the hulls, and all have the result \throws std::invalid_argument for options out of range or a wrong number of
-/// hulls. Source: docs/notation.md, "packing fraction".
+/// needs the hulls, and all have the result
+/// \throws std::invalid_argument for options out of range or a wrong number of hulls.
+/// Source: docs/notation.md, "packing fraction".
 PackingFraction packing_fraction(const Box& box, const GrainNodes& grains, std::span<const ConvexHull> hulls,
                                  const PackingFractionOptions& options = {}, const Ranks& ranks = Ranks::alone());
 

@@ -34,8 +34,8 @@ struct ScatteringAmplitudes {
 ///
 /// Grains are summed in their order: the result does not depend on the number of threads and ranks.
 /// \param ranks collective: all call it alike with all nodes, each sums at its own wave vectors (DealtItems), and all
-/// have the result; so with everything below Source: docs/notation.md, "form factor"; "scattering, structure factor";
-/// docs/performance-measure.md.
+/// have the result; so below
+/// Source: docs/notation.md, "form factor"; "scattering, structure factor"; docs/performance-measure.md.
 ScatteringAmplitudes scattering_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice,
                                            const Ranks& ranks = Ranks::alone());
 
