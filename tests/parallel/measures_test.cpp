@@ -19,8 +19,8 @@ ProgramResult boba_on(int ranks, const TemporaryFolder& folder, const std::vecto
 std::vector<std::string> run_into(const std::string& output, const std::vector<std::string>& more = {}) {
   std::vector<std::string> arguments{"run", "scene.toml", "--output", output, "--quiet", "--set", "species.0.count=10"};
   for (const char* assignment :
-       {"stage.1.rate=8e-3", "stage.1.pressure_tolerance=0.05", "stage.1.kinetic_tolerance=0.1", "stage.2.rate=4e-3",
-        "stage.2.strain=0.1",
+       {"stage.0.packing_fraction=0.3", "stage.1.rate=2e-2", "stage.1.pressure_tolerance=0.1",
+        "stage.1.kinetic_tolerance=0.2", "stage.2.rate=1e-2", "stage.2.strain=0.1",
         "measure=[{what = \"stress, packing-fraction, shape, scattering, contacts\", every_strain = 0.04, q_max = 2.0, "
         "points = 20000, sensitivity = true}, {what = \"order, motion\", every_strain = 0.03, neighbours = "
         "\"voronoi\"}]"}) {
@@ -73,15 +73,15 @@ TEST(MeasuresOnRanks, AreTheSameAlongARun) {
 TEST(MeasuresOnRanks, GoOnOnOtherRanks) {
   const TemporaryFolder folder;
   folder.file("scene.toml", small_scene);
-  ASSERT_EQ(boba_on(1, folder, run_into("alone")).exit_code, 0);
-  ProgramResult result = boba_on(3, folder, run_into("out", {"--wall-time", "0.1"}));
+  ASSERT_EQ(boba_on(1, folder, run_into("alone", {"--set", "stage.2.strain=0.4"})).exit_code, 0);
+  ProgramResult result = boba_on(3, folder, run_into("out", {"--set", "stage.2.strain=0.4", "--wall-time", "0.05"}));
   int n_stops = 0;
   for (const int ranks : {2, 4, 1, 3, 1, 1}) {
     if (result.exit_code != 75) {
       break;
     }
     ++n_stops;
-    result = boba_on(ranks, folder, {"resume", "out", "--quiet", "--wall-time", n_stops < 3 ? "0.1" : "100"});
+    result = boba_on(ranks, folder, {"resume", "out", "--quiet", "--wall-time", n_stops < 3 ? "0.05" : "100"});
   }
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_GE(n_stops, 1);
