@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Time of a step of a dense shear on the ranks it is started on, what the ranks tell each other, and what they would on
-// more. Prints one line of JSON. The packing is that of bench_engine, 16 grains of 5137 nodes, repeated.
+// more; time of measuring a frame. Prints one line of JSON. The packing is that of bench_engine, 16 grains of 5137
+// nodes, repeated.
 #include "bench/engine/dense_packing.h"
 #include "bench/scaling/count_halo.h"
+#include "bench/scaling/processor_time.h"
 #include "bench/scaling/repeat_packing.h"
+#include "bench/scaling/time_frame.h"
 #include "bpm/parallel/message_passing.h"
 #include "bpm/parallel/share_packing.h"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
-
 #include <chrono>
-#include <ctime>
+#include <fmt/format.h>
 
 namespace boba::bench {
 namespace {
@@ -21,14 +22,9 @@ struct Arguments {
   double alpha = 2.0;
   std::array<int, 3> times = {1, 1, 1};
   bool mixed = false;
+  int frames = 0;
   std::vector<int> count;
 };
-
-double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 Packing packing_of(const Arguments& a, const Ranks& ranks) {
   Packing packing;
@@ -70,6 +66,7 @@ void run(const Arguments& a, const Ranks& ranks) {
                       static_cast<double>(t.halo_bytes - before.halo_bytes),
                       static_cast<double>(t.halo_messages - before.halo_messages)};
   ranks.largest(largest);
+  const std::string frame = a.frames > 0 ? fmt::format(", \"frame\": {}", time_frame(stepper, ranks, a.frames)) : "";
   if (!ranks.is_root()) {
     return;
   }
@@ -91,7 +88,7 @@ void run(const Arguments& a, const Ranks& ranks) {
                k == 0 ? ", \"counted\": [" : ", ", c.n_ranks, c.imbalance, c.mean_messages, c.mean_nodes, c.most_nodes,
                c.mean_ghosts);
   }
-  fmt::print("{}}}\n", a.count.empty() ? "" : "]");
+  fmt::print("{}{}}}\n", a.count.empty() ? "" : "]", frame);
 }
 
 } // namespace
@@ -105,6 +102,7 @@ int main(int argc, char** argv) {
   app.add_option("--alpha", a.alpha, "0 or 2")->capture_default_str();
   app.add_option("--times", a.times, "repeats along the three cell vectors")->capture_default_str();
   app.add_option("--steps", a.steps, "timed")->capture_default_str();
+  app.add_option("--frames", a.frames, "measured too, timed by their best; 0: none")->capture_default_str();
   app.add_option("--threads", a.threads, "of a rank")->capture_default_str();
   app.add_flag("--mixed", a.mixed, "mixed precision");
   app.add_option("--count", a.count, "on one rank: count the halo on so many ranks");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/command.h"
 #include "bpm/app/measure/measure_run.h"
+#include "bpm/app/on_ranks.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,13 +17,16 @@ struct MeasureArguments {
   std::string neighbours = "solid-angle";
 };
 
-ExitCode measure_stored_frames(MeasureArguments a) {
-  a.options.plan.kinds = measure_kinds(a.what);
+ExitCode measure_stored_frames(MeasureArguments a, const Ranks& ranks) {
+  ranks.together([&] { a.options.plan.kinds = measure_kinds(a.what); });
   a.options.plan.neighbours = a.neighbours == "voronoi" ? NeighbourRule::voronoi : NeighbourRule::solid_angle;
   if (!a.window.empty()) {
     a.options.window = {a.window[0], a.window[1]};
   }
-  const MeasureRunResult result = measure_run(a.options);
+  const MeasureRunResult result = measure_run(a.options, ranks);
+  if (!ranks.is_root()) {
+    return ExitCode::done;
+  }
   fmt::print("{} frame{} measured into {}\n{}", result.n_frames, result.n_frames == 1 ? "" : "s",
              result.folder.string(), result.averages);
   if (!result.undeformed_known) {
@@ -76,13 +80,13 @@ CommandBody add_measure_command(CLI::App& app) {
       ->check(CLI::IsMember({"solid-angle", "voronoi"}))
       ->capture_default_str();
   app.add_option("--output", options.output, "folder of the tables (default: measures in the run's folder)");
-  app.add_option("--threads", options.threads, "threads; 0 takes all cores")->check(CLI::Range(0, 1024));
+  app.add_option("--threads", options.threads, "threads of a rank; 0 takes all cores")->check(CLI::Range(0, 1024));
   app.add_flag("--stored-stress", options.stored_stress,
                "the stress that the run stored, instead of one from forces evaluated anew");
   app.add_flag("--force", options.force, "replace tables that are there");
   add_numbers(app, options.plan);
   app.footer("Tables and columns: docs/formats-measure.md.");
-  return [a] { return measure_stored_frames(*a); };
+  return [a] { return on_all_ranks([a](const Ranks& ranks) { return measure_stored_frames(*a, ranks); }); };
 }
 
 } // namespace boba

@@ -69,30 +69,42 @@ std::shared_ptr<MeasureTables> measure_tables(const RunSetup& setup, const Simul
                                               const MeasurePlan& plan, std::int64_t last_step) {
   const Packing& packing = simulation.packing();
   const FileMode mode = setup.restart ? FileMode::append : FileMode::create;
-  auto tables =
-      std::make_shared<MeasureTables>(setup.folder.measures(), packing.topology(false), plan,
-                                      undeformed_grains(packing), mode, last_step);
-  if (setup.restart && plan.has(MeasureKind::motion)) {
+  auto tables = std::make_shared<MeasureTables>(setup.folder.measures(), packing.topology(false), plan,
+                                                undeformed_grains(packing), mode, last_step, simulation.ranks());
+  if (setup.restart && simulation.ranks().is_root() && plan.has(MeasureKind::motion)) {
     tables->restore_motion(setup.restart->motion);
   }
   return tables;
 }
 
-/// Observers that look when rank 0's writers look, in the same order, and write nothing.
+/// Observers that look when rank 0's writers of frames look, in the same order, and write nothing.
 template <class MakeSchedule>
 void follow_writers(RunWriters& writers, const RunSetup& setup, const MakeSchedule& schedule) {
-  const auto add = [&](const OutputInterval& every, bool velocities) {
-    writers.frames.push_back(std::make_unique<FrameObserver>(
-        schedule(every), velocities, last_step_of(setup, writers.frames.size() + 1), [](const Snapshot&) {}));
-  };
   const OutputPlan& plan = setup.scene.output;
   for (const auto* output : {&plan.trajectory, &plan.dump, &plan.vtk}) {
     if (*output) {
-      add((*output)->every, (*output)->velocities);
+      writers.frames.push_back(std::make_unique<FrameObserver>(
+          schedule((*output)->every), Simulation::Parts{.velocity = (*output)->velocities},
+          last_step_of(setup, writers.frames.size() + 1), [](const Snapshot&) {}));
     }
   }
+}
+
+/// The measures, which all ranks take together.
+template <class MakeSchedule>
+void add_measures(RunWriters& writers, const RunSetup& setup, const Simulation& simulation,
+                  const MakeSchedule& schedule) {
   for (const SceneMeasure& entry : setup.scene.measures) {
-    add(entry.every, entry.plan.has(MeasureKind::stress));
+    const std::int64_t last_step = last_step_of(setup, writers.frames.size() + 1);
+    const auto tables = measure_tables(setup, simulation, entry.plan, last_step);
+    // Velocities tell the kinetic part of the stress apart.
+    const Simulation::Parts parts = {.velocity = entry.plan.has(MeasureKind::stress),
+                                     .positions_on_all_ranks = entry.plan.needs_all_ranks()};
+    writers.frames.push_back(std::make_unique<FrameObserver>(
+        schedule(entry.every), parts, last_step, [tables](const Snapshot& snapshot) { tables->add(snapshot); }));
+    if (entry.plan.has(MeasureKind::motion)) {
+      writers.motion = tables;
+    }
   }
 }
 
@@ -124,6 +136,7 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
 
   if (!writes) {
     follow_writers(writers, setup, schedule);
+    add_measures(writers, setup, simulation, schedule);
     return writers;
   }
   const auto topology = std::make_shared<const Topology>(simulation.packing().topology(false));
@@ -131,7 +144,7 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
   const auto last_step = [&] { return last_step_of(setup, writers.frames.size() + 1); };
   const auto add = [&](const FrameOutput& output, FrameObserver::Write write) {
     writers.frames.push_back(std::make_unique<FrameObserver>(
-        schedule(output.every), output.velocities, last_step(), std::move(write)));
+        schedule(output.every), Simulation::Parts{.velocity = output.velocities}, last_step(), std::move(write)));
   };
   if (plan.trajectory) {
     writers.trajectory = trajectory_writer(setup, simulation, *plan.trajectory, last_step());
@@ -143,14 +156,7 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
   if (plan.vtk) {
     add(*plan.vtk, vtk_writer(setup, topology, last_step()));
   }
-  for (const SceneMeasure& entry : setup.scene.measures) {
-    // Velocities tell the kinetic part of the stress apart.
-    const auto tables = measure_tables(setup, simulation, entry.plan, last_step());
-    add({entry.every, entry.plan.has(MeasureKind::stress)}, [tables](const Snapshot& snapshot) { tables->add(snapshot); });
-    if (entry.plan.has(MeasureKind::motion)) {
-      writers.motion = tables;
-    }
-  }
+  add_measures(writers, setup, simulation, schedule);
   return writers;
 }
 

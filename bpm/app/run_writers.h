@@ -26,7 +26,8 @@ struct RunWriters {
   std::vector<std::int64_t> last_steps() const;
 };
 
-/// The simulation is in the state that the run starts from. Rank 0 alone has files; the others look when it looks.
+/// The simulation is in the state that the run starts from. Rank 0 alone has files; the others look when it looks, and
+/// measure with it.
 /// \throws std::runtime_error when a file cannot be made or does not belong to the checkpoint.
 RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, const PackingNumbers& numbers);
 

@@ -65,7 +65,7 @@ struct SavedState {
 /// A packing in motion: the engine's only public face.
 ///
 /// With several ranks, all make the same calls, and everything but the mere looks (step, time, box, totals ...) is
-/// collective. Whole packings are handed out to rank 0 alone.
+/// collective. Whole packings are handed out to rank 0 alone, or to all who ask for it.
 class Simulation {
 public:
   /// \throws std::invalid_argument for a packing or an option outside its range.
@@ -98,8 +98,9 @@ public:
   struct Parts {
     bool velocity = false;
     bool force = false;
+    bool positions_on_all_ranks = false; ///< of all nodes, 24 bytes each on every rank; otherwise on rank 0 alone
   };
-  /// Nodes and stresses of grains are there on rank 0 alone.
+  /// Velocities, forces and stresses of grains are there on rank 0 alone.
   Snapshot snapshot(Parts parts) const;
   Snapshot snapshot() const { return snapshot(Parts{}); }
   /// Forces on the two ends of a `press` stage, along z (k d): lower, upper.

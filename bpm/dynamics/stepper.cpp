@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <omp.h>
 
 namespace boba {
@@ -23,47 +22,12 @@ constexpr double least_smoothness = 0.25;
 /// collapsed.
 constexpr double least_motion = 3e-3;
 
-std::vector<Vector3> fractional_centres(const Packing& packing) {
-  std::vector<Vector3> centres;
-  const std::vector<std::int64_t> first = packing.first_nodes();
-  for (int g = 0; g < packing.n_grains(); ++g) {
-    Vector3 sum = Vector3::Zero();
-    for (std::int64_t node = first[g]; node < first[g + 1]; ++node) {
-      sum += packing.position[node];
-    }
-    centres.push_back(packing.box.to_fractional(sum / static_cast<double>(first[g + 1] - first[g])));
-  }
-  return centres;
-}
-
-Distribution first_distribution(const Packing& packing, const SimulationOptions& options) {
-  if (!options.ranks->many()) {
-    return {};
-  }
-  const std::vector<int> n_nodes = packing.nodes_of_grains();
-  const PlacementInput input = {&packing,
-                                options.ranks->size(),
-                                lanes_of_block(options.precision),
-                                fractional_centres(packing),
-                                {n_nodes.begin(), n_nodes.end()}};
-  return {options.ranks, Ownership(place_grains(input), options.ranks->size(), n_nodes)};
-}
-
-std::vector<int> grains_in_order(const Packing& packing, const Distribution& distribution) {
-  if (!distribution.many()) {
-    std::vector<int> all(packing.n_grains());
-    std::iota(all.begin(), all.end(), 0);
-    return all;
-  }
-  return along_curve(distribution.ownership.grains_of(distribution.ranks->rank()), fractional_centres(packing));
-}
-
 } // namespace
 
 Stepper::Stepper(Packing packing, const Material& material, const SimulationOptions& options)
     : packing_(std::move(packing)), material_(material), options_(options),
-      distribution_(first_distribution(packing_, options)), agreement_(*options.ranks),
-      layout_(packing_, options.precision, grains_in_order(packing_, distribution_)), state_(packing_, layout_),
+      distribution_(distribute(packing_, *options.ranks, options.precision)), agreement_(*options.ranks),
+      layout_(packing_, options.precision, own_grains(packing_, distribution_)), state_(packing_, layout_),
       forces_(packing_, layout_, material, options.skin, distribution_), box_(packing_.box) {
   omp_set_num_threads(options.threads);
   if (!options.ranks->is_root()) { // rank 0 alone writes

@@ -53,6 +53,9 @@ Snapshot Stepper::snapshot(Simulation::Parts parts) const {
     centre /= layout_.n_nodes(g);
   }
   gather(snapshot.position);
+  if (parts.positions_on_all_ranks) {
+    ranks().broadcast(snapshot.position);
+  }
   if (parts.velocity) {
     gather(snapshot.velocity);
   }

@@ -33,25 +33,28 @@ bool is_first_side(int grain, const NeighbourGrain& neighbour) {
 
 class NetworkBuilder {
 public:
-  NetworkBuilder(const Box& box, const GrainNodes& grains, const Material& material)
+  /// For the contacts of these grains.
+  NetworkBuilder(const Box& box, const GrainNodes& grains, const Material& material, const DealtItems& items)
       : box_(box), grains_(grains), material_(material), bounds_(bounds_of(grains)), centres_(grain_centres(grains)),
-        grids_(grains.n_grains()) {
+        neighbours_(grains.n_grains()), grids_(grains.n_grains()) {
+    parallel_loop(items, [&](std::int64_t g) { neighbours_[g] = first_side_neighbours(static_cast<int>(g)); });
+    std::vector<char> needed(grains.n_grains(), 0);
+    for (std::int64_t k = 0; k < items.n_own(); ++k) {
+      for (const NeighbourGrain& neighbour : neighbours_[items.own(k)]) {
+        needed[items.own(k)] = needed[neighbour.other] = 1;
+      }
+    }
     parallel_loop(grains.n_grains(), [&](std::int64_t g) {
-      grids_[g] = GrainGrid(grains.nodes_of(static_cast<int>(g)), bounds_[g], material.diameter);
+      if (needed[g]) {
+        grids_[g] = GrainGrid(grains.nodes_of(static_cast<int>(g)), bounds_[g], material.diameter);
+      }
     });
   }
 
   std::vector<GrainContact> contacts_of(int grain) const {
     std::vector<GrainContact> contacts;
-    auto neighbours = neighbour_grains(grain, bounds_, box_, material_.diameter);
-    std::sort(neighbours.begin(), neighbours.end(), [](const NeighbourGrain& a, const NeighbourGrain& b) {
-      return std::tie(a.other, a.image) < std::tie(b.other, b.image);
-    });
     std::vector<kernels::NodePair> pairs;
-    for (const NeighbourGrain& neighbour : neighbours) {
-      if (!is_first_side(grain, neighbour)) {
-        continue;
-      }
+    for (const NeighbourGrain& neighbour : neighbours_[grain]) {
       const Vector3 shift = box_.h() * Vector3(neighbour.image.a, neighbour.image.b, neighbour.image.c);
       pairs.clear();
       add_pairs_between(grids_[grain], grids_[neighbour.other], GrainFrame{}.displaced(shift), material_.diameter,
@@ -66,6 +69,16 @@ public:
   }
 
 private:
+  /// By grain and image.
+  std::vector<NeighbourGrain> first_side_neighbours(int grain) const {
+    auto neighbours = neighbour_grains(grain, bounds_, box_, material_.diameter);
+    std::erase_if(neighbours, [&](const NeighbourGrain& neighbour) { return !is_first_side(grain, neighbour); });
+    std::sort(neighbours.begin(), neighbours.end(), [](const NeighbourGrain& a, const NeighbourGrain& b) {
+      return std::tie(a.other, a.image) < std::tie(b.other, b.image);
+    });
+    return neighbours;
+  }
+
   GrainContact contact_from(int grain, int other, const Vector3& shift,
                             const std::vector<kernels::NodePair>& pairs) const {
     GrainContact contact{.grain = grain, .other = other};
@@ -101,19 +114,23 @@ private:
   const Material& material_;
   std::vector<Bounds> bounds_;
   std::vector<Vector3> centres_;
-  std::vector<GrainGrid> grids_;
+  std::vector<std::vector<NeighbourGrain>> neighbours_;
+  std::vector<GrainGrid> grids_; ///< of grains whose contacts are looked for, and of their neighbours
 };
 
 } // namespace
 
-std::vector<GrainContact> contact_network(const Box& box, const GrainNodes& grains, const Material& material) {
+std::vector<GrainContact> contact_network(const Box& box, const GrainNodes& grains, const Material& material,
+                                          const Ranks& ranks) {
   if (!(material.diameter > 0.0) || !std::isfinite(material.diameter)) {
     throw std::invalid_argument(
         fmt::format("contact network: the contact distance is {}; it must be positive", material.diameter));
   }
-  const NetworkBuilder builder(box, grains, material);
+  const DealtItems items(ranks, grains.n_grains());
+  const NetworkBuilder builder(box, grains, material, items);
   std::vector<std::vector<GrainContact>> of_grain(grains.n_grains());
-  parallel_loop(grains.n_grains(), [&](std::int64_t g) { of_grain[g] = builder.contacts_of(static_cast<int>(g)); });
+  parallel_loop(items, [&](std::int64_t g) { of_grain[g] = builder.contacts_of(static_cast<int>(g)); });
+  items.share(of_grain);
   std::vector<GrainContact> contacts;
   for (const auto& list : of_grain) {
     contacts.insert(contacts.end(), list.begin(), list.end());

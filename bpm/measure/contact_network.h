@@ -3,6 +3,7 @@
 
 #include "bpm/laws/material.h"
 #include "bpm/measure/grain_nodes.h"
+#include "bpm/parallel/ranks.h"
 
 #include <array>
 #include <vector>
@@ -27,9 +28,11 @@ struct GrainContact {
 /// Force: sum over the touching node pairs of [k (d - r) + k3 (d - r)^3] e; damping is left out, since stored frames
 /// need not hold velocities. Area: the midpoints of the pairs are projected along the normal, and the hull of discs of
 /// diameter d around them is taken, A = A_hull + L_hull d/2 + pi d^2/4 (one pair alone: the disc).
+/// \param ranks collective: all call it alike, each finds the contacts of its own grains (DealtItems), and all have all
 /// \throws std::invalid_argument for a contact distance that is not positive.
 /// Source: docs/formats-measure.md, "Contact network"; force: bpm/laws/contact.h.
-std::vector<GrainContact> contact_network(const Box& box, const GrainNodes& grains, const Material& material = {});
+std::vector<GrainContact> contact_network(const Box& box, const GrainNodes& grains, const Material& material = {},
+                                          const Ranks& ranks = Ranks::alone());
 
 /// Numbers of contacts, with and without grains that carry nothing.
 struct Coordination {

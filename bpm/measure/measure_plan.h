@@ -30,6 +30,15 @@ struct MeasurePlan {
   Material material;
 
   bool has(MeasureKind kind) const { return kinds.contains(kind); }
+  /// Order and motion look at neighbours by the grains' volumes.
+  bool needs_hull_radii() const {
+    return neighbours == NeighbourRule::voronoi && (has(MeasureKind::order) || has(MeasureKind::motion));
+  }
+  bool needs_hulls() const {
+    return has(MeasureKind::shape) || has(MeasureKind::packing_fraction) || needs_hull_radii();
+  }
+  /// Something is measured that takes long, so that all ranks do a share of it and need the nodes.
+  bool needs_all_ranks() const { return needs_hulls() || has(MeasureKind::scattering) || has(MeasureKind::contacts); }
 };
 
 /// The names that the command line and scenes use: stress, packing-fraction, shape, scattering, order, contacts,

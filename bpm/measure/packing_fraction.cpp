@@ -111,8 +111,9 @@ Share share(std::int64_t hits, std::int64_t points) {
 class Sampler {
 public:
   Sampler(const Box& box, const GrainNodes& grains, std::span<const ConvexHull> hulls,
-          const PackingFractionOptions& options)
-      : box_(box), grains_(grains), seed_(options.seed), radius_(0.5 * options.node_diameter) {
+          const PackingFractionOptions& options, const Ranks& ranks)
+      : box_(box), grains_(grains), seed_(options.seed), radius_(0.5 * options.node_diameter),
+        items_(ranks, grains.n_grains()) {
     for (const ConvexHull& hull : hulls) {
       planes_.emplace_back(hull, box);
     }
@@ -143,7 +144,9 @@ private:
     }
     const PointGrid grid(box_, points, std::max(2.0 * radius_, 1e-3 * std::cbrt(box_.volume())));
     Marks marks(points.size());
-    parallel_loop(grains_.n_grains(), [&](std::int64_t grain) { mark(static_cast<int>(grain), grid, marks); });
+    parallel_loop(items_, [&](std::int64_t grain) { mark(static_cast<int>(grain), grid, marks); });
+    items_.ranks().any(marks.in_node);
+    items_.ranks().any(marks.in_hull);
     return count(marks);
   }
 
@@ -169,6 +172,7 @@ private:
   const GrainNodes& grains_;
   std::uint64_t seed_;
   double radius_;
+  DealtItems items_;
   std::vector<HullPlanes> planes_;
   Hits hits_;
 };
@@ -176,9 +180,9 @@ private:
 } // namespace
 
 PackingFraction packing_fraction(const Box& box, const GrainNodes& grains, std::span<const ConvexHull> hulls,
-                                 const PackingFractionOptions& options) {
+                                 const PackingFractionOptions& options, const Ranks& ranks) {
   check(grains, hulls, options);
-  Sampler sampler(box, grains, hulls, options);
+  Sampler sampler(box, grains, hulls, options, ranks);
   if (!options.target_error) {
     sampler.draw_to(options.n_points);
     return sampler.result();

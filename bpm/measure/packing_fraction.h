@@ -3,6 +3,7 @@
 
 #include "bpm/measure/convex_hull.h"
 #include "bpm/measure/grain_nodes.h"
+#include "bpm/parallel/ranks.h"
 
 #include <cstdint>
 #include <optional>
@@ -34,12 +35,14 @@ struct PackingFraction {
 /// Packing fraction by random points in the box.
 ///
 /// phi = n_hit / n; its standard error is sqrt(p (1 - p) / n) with p = (n_hit + 1) / (n + 2), which does not vanish
-/// when all points hit. Point i of a seed is the same on any number of threads, hence so is the result.
+/// when all points hit. Point i of a seed is the same on any number of threads and ranks, hence so is the result.
 /// \param hulls one a grain, in unwrapped coordinates like the nodes; or none at all, which leaves the nodes
+/// \param ranks collective: all call it alike, each looks at what its own grains hit (DealtItems), of which alone it
+/// needs the hulls, and all have the result
 /// \throws std::invalid_argument for options out of range or a wrong number of hulls.
 /// Source: docs/notation.md, "packing fraction".
 PackingFraction packing_fraction(const Box& box, const GrainNodes& grains, std::span<const ConvexHull> hulls,
-                                 const PackingFractionOptions& options = {});
+                                 const PackingFractionOptions& options = {}, const Ranks& ranks = Ranks::alone());
 
 /// The cheap measure: volume of the undeformed grains over the volume of the box. It exceeds the packing fraction, and
 /// may exceed 1, where grains are compressed.

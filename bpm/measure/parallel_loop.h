@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/parallel/dealt_items.h"
+
 #include <cstdint>
 #include <exception>
 
@@ -26,6 +28,12 @@ template <class Body> void parallel_loop(std::int64_t n, const Body& body) {
   if (first_error) {
     std::rethrow_exception(first_error);
   }
+}
+
+/// The same for this rank's own of some items; together the ranks do all. Collective: what is thrown on one rank is
+/// thrown on all (RankError).
+template <class Body> void parallel_loop(const DealtItems& items, const Body& body) {
+  items.ranks().together([&] { parallel_loop(items.n_own(), [&](std::int64_t k) { body(items.own(k)); }); });
 }
 
 } // namespace boba::measure

@@ -72,6 +72,27 @@ std::vector<RowRange> slabs(const std::vector<ReciprocalRow>& rows) {
   return result;
 }
 
+/// Gives all ranks the values at the wave vectors of all ranges, each from the rank that has summed there.
+void share_ranges(const DealtItems& items, const std::vector<ReciprocalRow>& rows, const std::vector<RowRange>& ranges,
+                  std::vector<double>& values) {
+  if (!items.ranks().many()) {
+    return;
+  }
+  const auto begin = [&](std::size_t i) { return values.begin() + rows[ranges[i].first].first; };
+  const auto end = [&](std::size_t i) {
+    const ReciprocalRow& last = rows[ranges[i].last - 1];
+    return values.begin() + last.first + last.size();
+  };
+  std::vector<std::vector<double>> lists(ranges.size());
+  for (std::int64_t k = 0; k < items.n_own(); ++k) {
+    lists[items.own(k)].assign(begin(items.own(k)), end(items.own(k)));
+  }
+  items.share(lists);
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    std::copy(lists[i].begin(), lists[i].end(), begin(i));
+  }
+}
+
 /// Sums over the grains so far, at every wave vector.
 struct RunningSums {
   std::vector<double> re, im, form_factor;
@@ -96,43 +117,64 @@ void add_slab(const SpectrumPlan& plan, std::span<const SpectrumPlan::Block> blo
   }
 }
 
+/// Gives all ranks the grids of all grains, each from the rank that has spread its nodes.
+void share_blocks(const DealtItems& items, std::vector<SpectrumPlan::Block>& blocks) {
+  using Block = SpectrumPlan::Block;
+  items.share(blocks, &Block::first);
+  items.share(blocks, &Block::size);
+  items.share(blocks, &Block::value);
+  items.share(blocks, &Block::phase_re);
+  items.share(blocks, &Block::phase_im);
+}
+
 /// Products of the two ways for the whole packing, {transform, direct}.
-std::array<double, 2> costs(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice) {
+std::array<double, 2> costs(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice,
+                            const Ranks& ranks) {
   const SpectrumPlan plan(box, lattice);
-  std::array<double, 2> total{};
-  for (int g = 0; g < grains.n_grains(); ++g) {
-    const auto nodes = grains.nodes_of(g);
+  const DealtItems items(ranks, grains.n_grains());
+  std::vector<std::array<double, 2>> of_grain(grains.n_grains());
+  parallel_loop(items, [&](std::int64_t g) {
+    const auto nodes = grains.nodes_of(static_cast<int>(g));
     Vector3 low = Vector3::Constant(1e300), high = -low;
     for (const Vector3& x : nodes) {
       const Vector3 s = box.to_fractional(x);
       low = low.cwiseMin(s);
       high = high.cwiseMax(s);
     }
-    total[0] += nodes.empty() ? 0.0 : plan.cost(nodes.size(), plan.block_size(high - low));
-    total[1] += static_cast<double>(nodes.size()) * static_cast<double>(lattice.n_vectors());
+    of_grain[g] = {nodes.empty() ? 0.0 : plan.cost(nodes.size(), plan.block_size(high - low)),
+                   static_cast<double>(nodes.size()) * static_cast<double>(lattice.n_vectors())};
+  });
+  items.share(of_grain);
+  std::array<double, 2> total{};
+  for (const auto& [transform, direct] : of_grain) {
+    total[0] += transform;
+    total[1] += direct;
   }
   return total;
 }
 
 } // namespace
 
-ScatteringAmplitudes transformed_amplitudes(const Box& box, const GrainNodes& grains,
-                                            const ReciprocalLattice& lattice) {
-  constexpr int grains_together = 32; // whose grids are held at once
+ScatteringAmplitudes transformed_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice,
+                                            const Ranks& ranks) {
+  const int grains_together = std::clamp(ranks.size(), 32, 128); // whose grids are held at once
   const SpectrumPlan plan(box, lattice);
   const std::vector<RowRange> ranges = slabs(lattice.rows());
   const auto n_vectors = static_cast<std::size_t>(lattice.n_vectors());
+  const DealtItems slab_items(ranks, static_cast<std::int64_t>(ranges.size()));
   RunningSums sums(n_vectors);
   for (int begin = 0; begin < grains.n_grains(); begin += grains_together) {
     const int n = std::min(grains_together, grains.n_grains() - begin);
     std::vector<SpectrumPlan::Block> blocks(n);
     std::vector<double> n_nodes(n);
-    parallel_loop(n, [&](std::int64_t g) {
-      const auto nodes = grains.nodes_of(begin + static_cast<int>(g));
-      blocks[g] = plan.spread(nodes);
-      n_nodes[g] = static_cast<double>(nodes.size());
-    });
-    parallel_loop(static_cast<std::int64_t>(ranges.size()), [&](std::int64_t i) {
+    for (int g = 0; g < n; ++g) {
+      n_nodes[g] = static_cast<double>(grains.nodes_of(begin + g).size());
+    }
+    const DealtItems items(ranks, n);
+    parallel_loop(items,
+                  [&](std::int64_t g) { blocks[g] = plan.spread(grains.nodes_of(begin + static_cast<int>(g))); });
+    share_blocks(items, blocks);
+    parallel_loop(slab_items, [&](std::int64_t i) {
       const RowRange& range = ranges[i];
       add_slab(plan, blocks, n_nodes, std::span(lattice.rows()).subspan(range.first, range.last - range.first), sums);
     });
@@ -145,23 +187,31 @@ ScatteringAmplitudes transformed_amplitudes(const Box& box, const GrainNodes& gr
         (sums.re[v] * sums.re[v] + sums.im[v] * sums.im[v]) / static_cast<double>(grains.n_nodes());
     amplitudes.form_factor[v] /= grains.n_grains();
   }
+  share_ranges(slab_items, lattice.rows(), ranges, amplitudes.intensity);
+  share_ranges(slab_items, lattice.rows(), ranges, amplitudes.form_factor);
   return amplitudes;
 }
 
-ScatteringAmplitudes scattering_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice) {
-  const auto [transformed, summed] = costs(box, grains, lattice);
-  return transformed < summed ? transformed_amplitudes(box, grains, lattice) : summed_amplitudes(box, grains, lattice);
+ScatteringAmplitudes scattering_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice,
+                                           const Ranks& ranks) {
+  const auto [transformed, summed] = costs(box, grains, lattice, ranks);
+  return transformed < summed ? transformed_amplitudes(box, grains, lattice, ranks)
+                              : summed_amplitudes(box, grains, lattice, ranks);
 }
 
-ScatteringAmplitudes summed_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice) {
+ScatteringAmplitudes summed_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice,
+                                       const Ranks& ranks) {
   ScatteringAmplitudes amplitudes;
   amplitudes.intensity.resize(lattice.n_vectors());
   amplitudes.form_factor.resize(lattice.n_vectors());
   const std::vector<RowRange> ranges = row_ranges(lattice.rows());
-  parallel_loop(static_cast<std::int64_t>(ranges.size()), [&](std::int64_t i) {
+  const DealtItems items(ranks, static_cast<std::int64_t>(ranges.size()));
+  parallel_loop(items, [&](std::int64_t i) {
     const RowRange& range = ranges[i];
     sum_range(box, grains, std::span(lattice.rows()).subspan(range.first, range.last - range.first), amplitudes);
   });
+  share_ranges(items, lattice.rows(), ranges, amplitudes.intensity);
+  share_ranges(items, lattice.rows(), ranges, amplitudes.form_factor);
   return amplitudes;
 }
 
@@ -199,9 +249,10 @@ std::vector<ScatteringShell> shell_average(const Box& box, const ReciprocalLatti
   return averaged;
 }
 
-std::vector<ScatteringShell> scattering(const Box& box, const GrainNodes& grains, const ScatteringOptions& options) {
+std::vector<ScatteringShell> scattering(const Box& box, const GrainNodes& grains, const ScatteringOptions& options,
+                                        const Ranks& ranks) {
   const ReciprocalLattice lattice(box, options.q_max);
-  return shell_average(box, lattice, scattering_amplitudes(box, grains, lattice), options.shell_width);
+  return shell_average(box, lattice, scattering_amplitudes(box, grains, lattice, ranks), options.shell_width);
 }
 
 double direct_intensity(std::span<const Vector3> nodes, const Vector3& q) {

@@ -3,6 +3,7 @@
 
 #include "bpm/measure/grain_nodes.h"
 #include "bpm/measure/reciprocal_lattice.h"
+#include "bpm/parallel/ranks.h"
 
 #include <vector>
 
@@ -28,21 +29,27 @@ struct ScatteringAmplitudes {
 };
 
 /// Sums at every wave vector of the half lattice, by whichever of the two ways takes fewer products: the non-uniform
-/// transform of each grain (`SpectrumPlan`, relative error 1e-10), or for small grains and few wave vectors the exact sums.
+/// transform of each grain (`SpectrumPlan`, relative error 1e-10), or for small grains and few wave vectors the exact
+/// sums.
 ///
-/// Grains are summed in their order: the result does not depend on the number of threads.
+/// Grains are summed in their order: the result does not depend on the number of threads and ranks.
+/// \param ranks collective: all call it alike with all nodes, each sums at its own wave vectors (DealtItems), and all
+/// have the result; so below
 /// Source: docs/notation.md, "form factor"; "scattering, structure factor"; docs/performance-measure.md.
-ScatteringAmplitudes scattering_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice);
+ScatteringAmplitudes scattering_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice,
+                                           const Ranks& ranks = Ranks::alone());
 
-/// The same by the non-uniform transform.
-ScatteringAmplitudes transformed_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice);
+/// The same by the non-uniform transform. Each rank spreads its own grains' nodes, and all know their grids.
+ScatteringAmplitudes transformed_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice,
+                                            const Ranks& ranks = Ranks::alone());
 
 /// The same by exact sums.
 ///
 /// The phases run along each row by recurrence, exp(i q(n3 + 1).r) = exp(i q(n3).r) exp(i b3.r), in the vector unit;
 /// cost: (number of nodes) x (number of wave vectors). The sums are formed in grain order: the result does not depend
-/// on the number of threads.
-ScatteringAmplitudes summed_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice);
+/// on the number of threads and ranks.
+ScatteringAmplitudes summed_amplitudes(const Box& box, const GrainNodes& grains, const ReciprocalLattice& lattice,
+                                       const Ranks& ranks = Ranks::alone());
 
 /// P_F, I and S = I / P_F on the reciprocal lattice of the box up to q_max, averaged in shells of |q|.
 ///
@@ -50,7 +57,8 @@ ScatteringAmplitudes summed_amplitudes(const Box& box, const GrainNodes& grains,
 /// out. As q -> 0, P_F -> N (nodes a grain); at large q P_F -> 1 for nodes without order.
 /// \throws std::invalid_argument for options out of range or a box that is not periodic.
 /// Source: docs/notation.md, "scattering, structure factor".
-std::vector<ScatteringShell> scattering(const Box& box, const GrainNodes& grains, const ScatteringOptions& options);
+std::vector<ScatteringShell> scattering(const Box& box, const GrainNodes& grains, const ScatteringOptions& options,
+                                        const Ranks& ranks = Ranks::alone());
 
 /// Averages given amplitudes in shells.
 std::vector<ScatteringShell> shell_average(const Box& box, const ReciprocalLattice& lattice,

@@ -71,6 +71,19 @@ void cut(const std::vector<int>& row, std::size_t unit, const PlacementInput& in
   }
 }
 
+std::vector<Vector3> fractional_centres(const Packing& packing) {
+  std::vector<Vector3> centres;
+  const std::vector<std::int64_t> first = packing.first_nodes();
+  for (int g = 0; g < packing.n_grains(); ++g) {
+    Vector3 sum = Vector3::Zero();
+    for (std::int64_t node = first[g]; node < first[g + 1]; ++node) {
+      sum += packing.position[node];
+    }
+    centres.push_back(packing.box.to_fractional(sum / static_cast<double>(first[g + 1] - first[g])));
+  }
+  return centres;
+}
+
 } // namespace
 
 std::uint32_t hilbert_place(const Vector3& fractional) {
@@ -124,6 +137,25 @@ double imbalance(const PlacementInput& input, std::span<const int> owner) {
   }
   const double mean = std::accumulate(cost.begin(), cost.end(), 0.0) / input.n_ranks;
   return mean > 0.0 ? *std::max_element(cost.begin(), cost.end()) / mean : 1.0;
+}
+
+Distribution distribute(const Packing& packing, const Ranks& ranks, Precision precision) {
+  if (!ranks.many()) {
+    return {};
+  }
+  const std::vector<int> n_nodes = packing.nodes_of_grains();
+  const PlacementInput input = {
+      &packing, ranks.size(), lanes_of_block(precision), fractional_centres(packing), {n_nodes.begin(), n_nodes.end()}};
+  return {&ranks, Ownership(place_grains(input), ranks.size(), n_nodes)};
+}
+
+std::vector<int> own_grains(const Packing& packing, const Distribution& distribution) {
+  if (!distribution.many()) {
+    std::vector<int> all(packing.n_grains());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+  return along_curve(distribution.ownership.grains_of(distribution.ranks->rank()), fractional_centres(packing));
 }
 
 } // namespace boba

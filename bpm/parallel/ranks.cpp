@@ -41,6 +41,31 @@ void Ranks::broadcast_bytes(void* values, std::size_t bytes) const {
   }
 }
 
+void Ranks::any(std::span<char> flags) const {
+  if (many()) {
+    MPI_Allreduce(MPI_IN_PLACE, flags.data(), static_cast<int>(flags.size()), MPI_BYTE, MPI_BOR, MPI_COMM_WORLD);
+  }
+}
+
+void Ranks::gather_all(const void* own, void* all, std::span<const std::int64_t> counts, std::size_t item_bytes) const {
+  constexpr std::int64_t most = std::numeric_limits<int>::max(); // MPI counts with an int
+  std::vector<int> n(size_), starts(size_);
+  std::int64_t total = 0;
+  for (int r = 0; r < size_; ++r) {
+    if (counts[r] > most - total) {
+      throw std::length_error("more than 2^31 values to be shared between the ranks");
+    }
+    n[r] = static_cast<int>(counts[r]);
+    starts[r] = static_cast<int>(total);
+    total += counts[r];
+  }
+  MPI_Datatype item = MPI_DATATYPE_NULL;
+  MPI_Type_contiguous(static_cast<int>(item_bytes), MPI_BYTE, &item);
+  MPI_Type_commit(&item);
+  MPI_Allgatherv(own, n[rank_], item, all, n.data(), starts.data(), item, MPI_COMM_WORLD);
+  MPI_Type_free(&item);
+}
+
 void Ranks::share_rows(std::span<double> table, int width, const Ownership& ownership) const {
   if (!many()) {
     return;

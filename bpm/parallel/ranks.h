@@ -43,6 +43,8 @@ public:
   }
   double smallest(double value) const { return -largest(-value); }
   bool any(bool value) const { return many() ? largest(value ? 1.0 : 0.0) > 0.0 : value; }
+  /// Element by element whether any rank has set it (to 1; else 0), in place.
+  void any(std::span<char> flags) const;
   std::int64_t sum(std::int64_t value) const;
 
   /// Rank 0's values for all; sizes are taken over too.
@@ -63,6 +65,10 @@ public:
 
   /// A table of one row a grain, whose owners have filled in theirs: afterwards all ranks have all rows.
   void share_rows(std::span<double> table, int width, const Ownership& ownership) const;
+
+  /// Every rank's items of so many bytes, one rank's behind the other's, on all ranks; rank r has `counts[r]` of them.
+  /// \throws std::length_error for 2^31 items and more, on all ranks.
+  void gather_all(const void* own, void* all, std::span<const std::int64_t> counts, std::size_t item_bytes) const;
 
   /// Calls work() on all ranks. When it throws on any, all throw RankError with the message of the first that did.
   template <class Work> void together(Work&& work) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engine on 1, 2, 3, 4 and 7 ranks: the same numbers, to the last bit.
+// The engine on 1, 2, 3, 4 and 7 ranks, and work that is dealt out to them: the same numbers, to the last bit.
 #include "tests/parallel/mpirun.h"
 #include "tests/support/temporary_folder.h"
 
@@ -39,7 +39,8 @@ INSTANTIATE_TEST_SUITE_P(Cases, OnRanks,
                          ::testing::Values(OnRanksCase{"shear", {2, 3, 4, 7}}, OnRanksCase{"mixed", {2, 7}},
                                            OnRanksCase{"velocities", {3}}, OnRanksCase{"compress", {2}},
                                            OnRanksCase{"walls", {3}}, OnRanksCase{"clamps", {2}},
-                                           OnRanksCase{"migrating", {2, 3, 4, 7}}),
+                                           OnRanksCase{"migrating", {2, 3, 4, 7}}, OnRanksCase{"dealt", {2, 3, 4, 7}},
+                                           OnRanksCase{"scattering", {2, 3, 4, 7}}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 TEST(FailingRank, EndsAllWithOneMessage) {

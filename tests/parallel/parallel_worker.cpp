@@ -3,12 +3,14 @@
 // Usage: parallel_worker CASE FILE [STATE]
 #include "bpm/dynamics/simulation.h"
 #include "bpm/dynamics/stepper.h"
+#include "bpm/measure/scattering.h"
+#include "bpm/parallel/dealt_items.h"
 #include "bpm/parallel/message_passing.h"
 #include "tests/support/small_packings.h"
 
-#include <fmt/format.h>
-
+#include <cmath>
 #include <cstdio>
+#include <fmt/format.h>
 #include <map>
 #include <random>
 #include <string>
@@ -157,6 +159,72 @@ void run_migrating(const Ranks& ranks, Bits& bits) {
   bits.add(stepper.snapshot(all_parts));
 }
 
+/// An item's number, a vector and a list whose length differs from item to item, some of them empty.
+struct DealtItem {
+  double number = -1.0;
+  Vector3 vector = Vector3::Zero();
+  std::vector<Vector3> list;
+
+  static DealtItem made(std::int64_t i) {
+    const double x = std::sqrt(static_cast<double>(i));
+    return {x, Vector3(x, -x, 2.0 * x), std::vector<Vector3>(i % 4, Vector3(0.5 * x, x, static_cast<double>(i)))};
+  }
+};
+
+/// Items that are dealt out come back to every rank, in their order, however many there are.
+void run_dealt(const Ranks& ranks, Bits& bits) {
+  for (const int n : {0, 1, 2, 5, 40}) {
+    const DealtItems items(ranks, n);
+    std::vector<DealtItem> found(n);
+    for (std::int64_t k = 0; k < items.n_own(); ++k) {
+      found[items.own(k)] = DealtItem::made(items.own(k));
+    }
+    if (ranks.sum(items.n_own()) != n || ranks.largest(static_cast<double>(items.n_own())) > n / ranks.size() + 1) {
+      throw std::runtime_error(fmt::format("{} items are not dealt out evenly", n));
+    }
+    items.share(found, &DealtItem::number);
+    items.share(found, &DealtItem::vector);
+    items.share(found, &DealtItem::list);
+    for (int i = 0; i < n; ++i) {
+      const DealtItem expected = DealtItem::made(i);
+      if (found[i].number != expected.number || found[i].vector != expected.vector || found[i].list != expected.list) {
+        throw std::runtime_error(fmt::format("item {} of {} is another's on rank {}", i, n, ranks.rank()));
+      }
+      bits.add("item", found[i].number);
+      bits.add("item", found[i].vector);
+    }
+    std::vector<char> flags(n);
+    for (std::int64_t k = 0; k < items.n_own(); ++k) {
+      flags[items.own(k)] = items.own(k) % 3 == 0 ? 1 : 0;
+    }
+    ranks.any(flags);
+    for (int i = 0; i < n; ++i) {
+      bits.add("flag", flags[i]);
+    }
+  }
+}
+
+/// S(q) by both ways: every rank has what rank 0 has.
+void run_scattering(const Ranks& ranks, Bits& bits) {
+  const Packing packing = twenty_grains();
+  const std::vector<std::int64_t> first_node = packing.first_nodes();
+  const measure::GrainNodes grains(packing.position, first_node);
+  const measure::ReciprocalLattice lattice(packing.box, 3.0);
+  for (const auto& amplitudes : {measure::transformed_amplitudes(packing.box, grains, lattice, ranks),
+                                 measure::summed_amplitudes(packing.box, grains, lattice, ranks)}) {
+    for (const std::vector<double>& values : {amplitudes.intensity, amplitudes.form_factor}) {
+      std::vector<double> of_root = values;
+      ranks.broadcast(of_root);
+      if (of_root != values) {
+        throw std::runtime_error(fmt::format("rank {} has other amplitudes than rank 0", ranks.rank()));
+      }
+      for (const double value : values) {
+        bits.add("amplitude", value);
+      }
+    }
+  }
+}
+
 /// A node that flies off: all ranks hear of it.
 void run_blow_up(const Ranks& ranks) {
   Packing packing = twenty_grains();
@@ -172,6 +240,10 @@ int work(int argc, char** argv, const Ranks& ranks) {
     run_migrating(ranks, bits);
   } else if (name == "blow_up") {
     run_blow_up(ranks);
+  } else if (name == "dealt") {
+    run_dealt(ranks, bits);
+  } else if (name == "scattering") {
+    run_scattering(ranks, bits);
   } else {
     run_case(name, ranks, bits);
   }

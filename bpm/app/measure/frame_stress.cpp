@@ -2,6 +2,7 @@
 #include "bpm/app/measure/frame_stress.h"
 
 #include "bpm/forces/force_field.h"
+#include "bpm/parallel/placement.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -18,30 +19,31 @@ constexpr double relative_change = 1e-12; ///< of the stress, at which the half-
 } // namespace
 
 struct FrameStress::Impl {
-  Impl(Packing packing_in, const Material& material_in, double dt_in)
-      : packing(std::move(packing_in)), material(material_in), dt(dt_in), layout(packing), state(packing, layout),
-        forces(packing, layout, material, contact_skin) {}
+  Impl(Packing packing_in, const Material& material_in, double dt_in, const Ranks& ranks)
+      : packing(std::move(packing_in)), material(material_in), dt(dt_in), first_node(packing.first_nodes()),
+        distribution(distribute(packing, ranks, Precision::full)),
+        layout(packing, Precision::full, own_grains(packing, distribution)), state(packing, layout),
+        forces(packing, layout, material, contact_skin, distribution) {}
 
   void place(const Snapshot& snapshot) {
-    for (int g = 0; g < layout.n_grains(); ++g) {
-      for (int node = 0; node < layout.n_nodes(g); ++node, ++next) {
-        state.set_position(g, node, snapshot.position[next]);
-        state.set_velocity(g, node, snapshot.velocity.empty() ? Vector3(Vector3::Zero()) : snapshot.velocity[next]);
+    for (const int g : layout.grains()) {
+      for (int node = 0; node < layout.n_nodes(g); ++node) {
+        const std::int64_t i = first_node[g] + node;
+        state.set_position(g, node, snapshot.position[i]);
+        state.set_velocity(g, node, snapshot.velocity.empty() ? Vector3(Vector3::Zero()) : snapshot.velocity[i]);
       }
     }
-    next = 0;
     forces.contact_list().invalidate();
   }
 
   /// v = v(n) - dt/(2m) f, with the forces evaluated last.
   void step_back(const Snapshot& snapshot) {
     const double back = 0.5 * dt / material.node_mass;
-    for (int g = 0; g < layout.n_grains(); ++g) {
-      for (int node = 0; node < layout.n_nodes(g); ++node, ++next) {
-        state.set_velocity(g, node, snapshot.velocity[next] - back * state.force(g, node));
+    for (const int g : layout.grains()) {
+      for (int node = 0; node < layout.n_nodes(g); ++node) {
+        state.set_velocity(g, node, snapshot.velocity[first_node[g] + node] - back * state.force(g, node));
       }
     }
-    next = 0;
   }
 
   /// Forces and sums at the present velocities; returns the largest component of the sum over the grains.
@@ -53,6 +55,7 @@ struct FrameStress::Impl {
                      .virial = Virial::full,
                      .keep_forces = true,
                      .residual_rate = gradient * snapshot.box.h()});
+    forces.share_sums(Virial::full);
     grain.assign(layout.n_grains(), {});
     double size = 0.0;
     Tensor6 total{};
@@ -75,17 +78,18 @@ struct FrameStress::Impl {
   Packing packing;
   Material material;
   double dt;
-  LaneLayout layout;
+  std::vector<std::int64_t> first_node; ///< per grain, in a snapshot
+  Distribution distribution;
+  LaneLayout layout; ///< of this rank's grains
   LaneState state;
   ForceField forces;
-  std::size_t next = 0; ///< node of the snapshot while grains are walked through
   std::vector<Tensor6> grain;
   Tensor6 last_total{};
   double change = 0.0;
 };
 
-FrameStress::FrameStress(Packing packing, const Material& material, double dt)
-    : impl_(std::make_unique<Impl>(std::move(packing), material, dt)) {}
+FrameStress::FrameStress(Packing packing, const Material& material, double dt, const Ranks& ranks)
+    : impl_(std::make_unique<Impl>(std::move(packing), material, dt, ranks)) {}
 FrameStress::~FrameStress() = default;
 
 std::vector<std::array<double, 6>> FrameStress::evaluate(const Snapshot& snapshot) {

@@ -4,6 +4,7 @@
 #include "bpm/laws/material.h"
 #include "bpm/packing/packing.h"
 #include "bpm/packing/snapshot.h"
+#include "bpm/parallel/ranks.h"
 
 #include <array>
 #include <memory>
@@ -20,12 +21,15 @@ namespace boba {
 /// Source: docs/notation.md, "Stress".
 class FrameStress {
 public:
-  /// \param packing the networks and grains of the frames; its positions do not matter
+  /// \param packing the networks and grains of the frames; its positions only say which rank does which grains
   /// \param dt time step of the run, tau; 0: the velocities of a frame are taken as they are
-  FrameStress(Packing packing, const Material& material, double dt);
+  /// \param ranks each owns some grains, as in a run; must outlive this
+  FrameStress(Packing packing, const Material& material, double dt, const Ranks& ranks = Ranks::alone());
   ~FrameStress();
 
-  /// Each grain's part times the frame's volume, xx yy zz xy xz yz, tension positive, k d.
+  /// Each grain's part times the frame's volume, xx yy zz xy xz yz, tension positive, k d. Collective: all ranks are
+  /// given the whole frame and have all grains' parts.
+  ///
   /// \throws std::invalid_argument for a frame of another packing.
   std::vector<std::array<double, 6>> evaluate(const Snapshot& snapshot);
 

@@ -10,13 +10,22 @@
 
 namespace boba {
 
-GrainShape grain_shape(const measure::ConvexHull& hull, const measure::FacetOptions& options) {
-  return {measure::hull_shape(hull), measure::grown_facets(hull, options), measure::transitive_facets(hull, options)};
+FacetSummary summary_of(const measure::Facets& facets) {
+  return {facets.n_facets(), facets.faceted_share()};
 }
 
-std::vector<measure::ConvexHull> grain_hulls(const measure::GrainNodes& grains) {
+GrainShape grain_shape(const measure::ConvexHull& hull, const measure::FacetOptions& options,
+                       std::vector<Facet>* facets) {
+  const measure::Facets grown = measure::grown_facets(hull, options);
+  for (int f = 0; facets != nullptr && f < grown.n_facets(); ++f) {
+    facets->push_back({grown.area[f], grown.normal[f]});
+  }
+  return {measure::hull_shape(hull), summary_of(grown), summary_of(measure::transitive_facets(hull, options))};
+}
+
+std::vector<measure::ConvexHull> grain_hulls(const measure::GrainNodes& grains, const DealtItems& items) {
   std::vector<measure::ConvexHull> hulls(grains.n_grains());
-  measure::parallel_loop(grains.n_grains(), [&](std::int64_t g) {
+  measure::parallel_loop(items, [&](std::int64_t g) {
     try {
       hulls[g] = measure::convex_hull(grains.nodes_of(static_cast<int>(g)));
     } catch (const std::invalid_argument& error) {

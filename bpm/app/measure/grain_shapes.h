@@ -6,23 +6,40 @@
 #include "bpm/measure/hull_facets.h"
 #include "bpm/measure/hull_shape.h"
 #include "bpm/packing/packing.h"
+#include "bpm/parallel/dealt_items.h"
 
 #include <optional>
 #include <vector>
 
 namespace boba {
 
-/// Shape of one grain by every definition that is reported.
+/// How flat a grain is by one rule.
+struct FacetSummary {
+  int n_facets = 0;
+  double faceted_share = 0.0; ///< of the hull's area
+};
+FacetSummary summary_of(const measure::Facets& facets);
+
+/// Size and shape of one grain by every definition that is reported.
 struct GrainShape {
   measure::HullShape shape;
-  measure::Facets grown;      ///< robust rule
-  measure::Facets transitive; ///< published rule
+  FacetSummary grown;      ///< robust rule
+  FacetSummary transitive; ///< published rule
 };
 
-GrainShape grain_shape(const measure::ConvexHull& hull, const measure::FacetOptions& options);
+/// A facet by the robust rule.
+struct Facet {
+  double area = 0.0;                ///< d^2
+  Vector3 normal = Vector3::Zero(); ///< unit, outwards
+};
 
-/// Hulls of all grains, on all threads. \throws std::invalid_argument naming the grain whose nodes have no volume.
-std::vector<measure::ConvexHull> grain_hulls(const measure::GrainNodes& grains);
+/// The facets are also told one by one where `facets` is given: largest first.
+GrainShape grain_shape(const measure::ConvexHull& hull, const measure::FacetOptions& options,
+                       std::vector<Facet>* facets = nullptr);
+
+/// Hulls of the grains dealt out to this rank, on all threads; the others' stay empty. Collective.
+/// \throws std::invalid_argument (RankError on several ranks) naming the grain whose nodes have no volume.
+std::vector<measure::ConvexHull> grain_hulls(const measure::GrainNodes& grains, const DealtItems& items);
 
 /// Nodes of an undeformed grain of each template: the baseline of every shape. Empty where it is not known (a template
 /// whose bonds are not at their rest length).

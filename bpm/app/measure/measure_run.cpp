@@ -5,6 +5,7 @@
 #include "bpm/io/input_error.h"
 #include "bpm/io/trajectory.h"
 #include "bpm/measure/blocking.h"
+#include "bpm/parallel/message_passing.h"
 #include "bpm/scene/scene.h"
 #include "bpm/scene/trajectory_start.h"
 
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <omp.h>
 #include <sstream>
@@ -95,8 +97,8 @@ std::optional<Scene> scene_of(const TrajectoryOrigin& origin, const std::filesys
 }
 
 /// What evaluates the forces anew, or the reason why it cannot.
-std::pair<std::shared_ptr<FrameStress>, std::string> frame_stress(const MeasureRunOptions& options,
-                                                                  const std::optional<Scene>& scene) {
+std::pair<std::shared_ptr<FrameStress>, std::string>
+frame_stress(const MeasureRunOptions& options, const std::optional<Scene>& scene, const Ranks& ranks) {
   if (options.stored_stress) {
     return {nullptr, "it was asked for"};
   }
@@ -109,10 +111,31 @@ std::pair<std::shared_ptr<FrameStress>, std::string> frame_stress(const MeasureR
   }
   try {
     Packing packing = read_trajectory_packing(trajectory_of(options.run), 0, std::nullopt);
-    return {std::make_shared<FrameStress>(std::move(packing), scene->material, scene->options.dt), ""};
+    return {std::make_shared<FrameStress>(std::move(packing), scene->material, scene->options.dt, ranks), ""};
   } catch (const InputError& error) {
     return {nullptr, error.what()};
   }
+}
+
+/// The tables, and what there is to say of them.
+std::unique_ptr<MeasureTables> open_tables(const MeasureRunOptions& options, const TrajectoryReader& reader,
+                                           const Ranks& ranks, MeasureRunResult& result) {
+  result.folder = folder_of(options);
+  result.velocity_known = reader.has_velocity();
+  const UndeformedGrains undeformed = undeformed_grains(reader.topology(), reader.snapshot(0));
+  result.undeformed_known =
+      std::none_of(undeformed.nodes.begin(), undeformed.nodes.end(), [](const auto& nodes) { return nodes.empty(); });
+  const std::optional<Scene> scene = scene_of(reader.origin(), trajectory_of(options.run));
+  MeasurePlan plan = options.plan;
+  plan.material = scene ? scene->material : plan.material;
+  const FileMode mode = options.force ? FileMode::overwrite : FileMode::create;
+  auto tables = std::make_unique<MeasureTables>(result.folder, reader.topology(), plan, undeformed, mode, -1, ranks);
+  if (plan.has(MeasureKind::stress)) {
+    auto [stress, reason] = frame_stress(options, scene, ranks);
+    tables->set_frame_stress(std::move(stress));
+    result.stored_stress = std::move(reason);
+  }
+  return tables;
 }
 
 /// averages.json and the same for the terminal.
@@ -154,46 +177,43 @@ std::string write_averages(const std::filesystem::path& path, const MeasureTable
 
 } // namespace
 
-MeasureRunResult measure_run(const MeasureRunOptions& options) {
-  check(options);
-  if (options.threads > 0) {
-    omp_set_num_threads(options.threads);
+MeasureRunResult measure_run(const MeasureRunOptions& options, const Ranks& ranks) {
+  if (options.threads > 0 || ranks.many()) {
+    omp_set_num_threads(options.threads > 0 ? options.threads : threads_of_a_rank(ranks));
   }
-  const TrajectoryReader reader(trajectory_of(options.run));
-  if (reader.n_frames() == 0) {
-    throw InputError(fmt::format("{}: holds no complete frame yet", trajectory_of(options.run).string()));
-  }
-  if (options.only_frame) {
-    reader.snapshot(*options.only_frame); // names what is there when the frame is not
-  }
+  std::optional<TrajectoryReader> reader;
+  ranks.together([&] {
+    check(options);
+    reader.emplace(trajectory_of(options.run));
+    if (reader->n_frames() == 0) {
+      throw InputError(fmt::format("{}: holds no complete frame yet", trajectory_of(options.run).string()));
+    }
+    if (options.only_frame) {
+      reader->snapshot(*options.only_frame); // names what is there when the frame is not
+    }
+  });
+  // A run that goes on may have added a frame between the looks of two ranks.
+  const auto n_frames = static_cast<std::int64_t>(ranks.smallest(static_cast<double>(reader->n_frames())));
   MeasureRunResult result;
-  result.folder = folder_of(options);
-  result.velocity_known = reader.has_velocity();
-  const UndeformedGrains undeformed = undeformed_grains(reader.topology(), reader.snapshot(0));
-  result.undeformed_known =
-      std::none_of(undeformed.nodes.begin(), undeformed.nodes.end(), [](const auto& nodes) { return nodes.empty(); });
-  const std::optional<Scene> scene = scene_of(reader.origin(), trajectory_of(options.run));
-  MeasurePlan plan = options.plan;
-  plan.material = scene ? scene->material : plan.material;
-  MeasureTables tables(result.folder, reader.topology(), plan, undeformed,
-                       options.force ? FileMode::overwrite : FileMode::create);
-  if (plan.has(MeasureKind::stress)) {
-    auto [stress, reason] = frame_stress(options, scene);
-    tables.set_frame_stress(std::move(stress));
-    result.stored_stress = std::move(reason);
-  }
-  FrameChoice choice(options, reader.n_frames());
-  for (std::int64_t frame = 0; frame < reader.n_frames(); ++frame) {
+  std::unique_ptr<MeasureTables> tables;
+  ranks.together([&] { tables = open_tables(options, *reader, ranks, result); });
+  FrameChoice choice(options, n_frames);
+  for (std::int64_t frame = 0; frame < n_frames; ++frame) {
     if (!choice.may_take(frame)) {
       continue;
     }
-    const Snapshot snapshot = reader.snapshot(frame);
+    Snapshot snapshot;
+    ranks.together([&] { snapshot = reader->snapshot(frame); });
     if (choice.takes(snapshot)) {
-      tables.add(snapshot);
+      tables->add(snapshot);
       ++result.n_frames;
     }
   }
-  result.averages = write_averages(result.folder / "averages.json", tables, options.window);
+  ranks.together([&] {
+    if (ranks.is_root()) {
+      result.averages = write_averages(result.folder / "averages.json", *tables, options.window);
+    }
+  });
   return result;
 }
 

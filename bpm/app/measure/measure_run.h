@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/measure/measure_plan.h"
+#include "bpm/parallel/ranks.h"
 
 #include <array>
 #include <cstdint>
@@ -22,7 +23,7 @@ struct MeasureRunOptions {
   std::optional<std::array<double, 2>> window; ///< strain window of averages.json; all frames without it
   bool force = false;                          ///< replace tables that are there
   bool stored_stress = false;                  ///< take the stress that the run stored, evaluate nothing
-  int threads = 0;                             ///< 0: all cores
+  int threads = 0;                             ///< of a rank; 0: all cores, or a rank's share of them
 };
 
 struct MeasureRunResult {
@@ -31,12 +32,13 @@ struct MeasureRunResult {
   bool undeformed_known = true; ///< false: no frame shows the undeformed grains, so the baseline columns are empty
   bool velocity_known = true;   ///< false: no velocities are stored
   std::string stored_stress;    ///< why the stress is the stored one; empty: the forces were evaluated anew
-  std::string averages;       ///< lines for the terminal: quantity, mean, standard error
+  std::string averages;         ///< lines for the terminal: quantity, mean, standard error
 };
 
-/// Measures the stored frames of a finished or running run.
+/// Measures the stored frames of a finished or running run. Collective: every rank reads the frames, they are measured
+/// together, and rank 0 writes.
 /// \throws InputError for a run that cannot be read or a frame that is not there; std::runtime_error when tables exist
-/// (without `force`) or cannot be written.
-MeasureRunResult measure_run(const MeasureRunOptions& options);
+/// (without `force`) or cannot be written. RankError on all when there are several ranks.
+MeasureRunResult measure_run(const MeasureRunOptions& options, const Ranks& ranks = Ranks::alone());
 
 } // namespace boba

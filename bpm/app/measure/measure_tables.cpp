@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/measure/measure_tables.h"
 
-#include "bpm/measure/parallel_loop.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -50,20 +48,15 @@ Tensor6 total_stress(const std::vector<Tensor6>& grains, const Box& box) {
   return total;
 }
 
-std::vector<double> hull_radii(const std::vector<ConvexHull>& hulls) {
-  std::vector<double> radii;
-  radii.reserve(hulls.size());
-  for (const ConvexHull& hull : hulls) {
-    radii.push_back(std::cbrt(3.0 * hull_shape(hull).volume / (4.0 * std::numbers::pi)));
-  }
-  return radii;
-}
-
 } // namespace
 
 MeasureTables::MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan,
-                             const UndeformedGrains& undeformed, FileMode mode, std::int64_t last_step)
-    : folder_(std::move(folder)), topology_(topology), plan_(std::move(plan)) {
+                             const UndeformedGrains& undeformed, FileMode mode, std::int64_t last_step,
+                             const Ranks& ranks)
+    : folder_(std::move(folder)), topology_(topology), plan_(std::move(plan)), ranks_(ranks) {
+  if (!ranks_.is_root()) {
+    return;
+  }
   if (plan_.has(MeasureKind::shape) || plan_.has(MeasureKind::packing_fraction)) {
     for (const std::vector<Vector3>& nodes : undeformed.nodes) {
       undeformed_hulls_.push_back(nodes.empty() ? std::nullopt : std::optional(convex_hull(nodes)));
@@ -154,17 +147,25 @@ double MeasureTables::grain_number(int grain) const {
 }
 
 void MeasureTables::add(const Snapshot& snapshot) {
-  using enum MeasureKind;
-  Frame frame{snapshot, GrainNodes(snapshot.position, topology_.first_node), {}, {}};
-  if (plan_.has(shape) || plan_.has(packing_fraction) ||
-      (plan_.neighbours == NeighbourRule::voronoi && (plan_.has(order) || plan_.has(motion)))) {
-    frame.hulls = grain_hulls(frame.grains);
+  Frame frame{
+      snapshot, measure_together(snapshot.box, snapshot.position, topology_.first_node, plan_, ranks_), {}, {}, {}};
+  if (plan_.has(MeasureKind::stress)) {
+    frame.grain_stress = frame_stress_ ? frame_stress_->evaluate(snapshot) : snapshot.grain_stress;
   }
+  ranks_.together([&] {
+    if (ranks_.is_root()) {
+      write_frame(frame);
+    }
+  });
+}
+
+void MeasureTables::write_frame(Frame& frame) {
+  using enum MeasureKind;
   if (plan_.has(order) || plan_.has(motion)) {
     find_neighbours(frame);
   }
   if (plan_.has(stress)) {
-    add_stress(snapshot);
+    add_stress(frame);
   }
   if (plan_.has(packing_fraction)) {
     add_packing_fraction(frame);
@@ -190,14 +191,16 @@ void MeasureTables::add(const Snapshot& snapshot) {
 }
 
 void MeasureTables::find_neighbours(Frame& frame) const {
-  const auto centres = grain_centres(frame.grains);
+  const Box& box = frame.snapshot.box;
+  frame.centres = grain_centres(GrainNodes(frame.snapshot.position, topology_.first_node));
   frame.neighbours = plan_.neighbours == NeighbourRule::voronoi
-                         ? voronoi_neighbours(frame.snapshot.box, centres, hull_radii(frame.hulls))
-                         : solid_angle_neighbours(frame.snapshot.box, centres);
+                         ? voronoi_neighbours(box, frame.centres, frame.found.hull_radii)
+                         : solid_angle_neighbours(box, frame.centres);
 }
 
-void MeasureTables::add_stress(const Snapshot& snapshot) {
-  const std::vector<Tensor6> grains = frame_stress_ ? frame_stress_->evaluate(snapshot) : snapshot.grain_stress;
+void MeasureTables::add_stress(const Frame& frame) {
+  const Snapshot& snapshot = frame.snapshot;
+  const std::vector<Tensor6>& grains = frame.grain_stress;
   for (std::size_t grain = 0; grain < grains.size(); ++grain) {
     Row row = {grain_number(static_cast<int>(grain))};
     row.insert(row.end(), grains[grain].begin(), grains[grain].end());
@@ -229,8 +232,7 @@ void MeasureTables::add_stress(const Snapshot& snapshot) {
 }
 
 void MeasureTables::add_packing_fraction(const Frame& frame) {
-  const PackingFraction phi =
-      measure::packing_fraction(frame.snapshot.box, frame.grains, frame.hulls, plan_.packing_fraction);
+  const PackingFraction& phi = *frame.found.packing_fraction;
   const auto volume = undeformed_mean(undeformed_, [](const GrainShape& s) { return s.shape.volume; });
   write("packing_fraction", frame.snapshot,
         {phi.both.value, phi.both.standard_error, phi.nodes.value, phi.nodes.standard_error, phi.hulls.value,
@@ -240,10 +242,8 @@ void MeasureTables::add_packing_fraction(const Frame& frame) {
 }
 
 void MeasureTables::add_shape(const Frame& frame) {
-  std::vector<GrainShape> shapes(frame.hulls.size());
+  const std::vector<GrainShape>& shapes = frame.found.shapes;
   std::vector<double> volumes, asphericities;
-  parallel_loop(static_cast<std::int64_t>(shapes.size()),
-                [&](std::int64_t g) { shapes[g] = grain_shape(frame.hulls[g], plan_.facets); });
   for (std::size_t g = 0; g < shapes.size(); ++g) {
     const auto& [shape, grown, transitive] = shapes[g];
     volumes.push_back(shape.volume);
@@ -251,11 +251,11 @@ void MeasureTables::add_shape(const Frame& frame) {
     const double number = grain_number(static_cast<int>(g));
     write("grains", frame.snapshot,
           {number, static_cast<double>(topology_.species[g]), shape.volume, shape.area, shape.asphericity,
-           shape.moments[0], shape.moments[1], shape.moments[2], static_cast<double>(grown.n_facets()),
-           grown.faceted_share(), static_cast<double>(transitive.n_facets()), transitive.faceted_share()});
-    for (int f = 0; f < grown.n_facets(); ++f) {
-      const Vector3& n = grown.normal[f];
-      write("facets", frame.snapshot, {number, static_cast<double>(f), grown.area[f], n[0], n[1], n[2]});
+           shape.moments[0], shape.moments[1], shape.moments[2], static_cast<double>(grown.n_facets),
+           grown.faceted_share, static_cast<double>(transitive.n_facets), transitive.faceted_share});
+    double f = 0.0;
+    for (const auto& [area, n] : frame.found.facets[g]) {
+      write("facets", frame.snapshot, {number, f++, area, n[0], n[1], n[2]});
     }
   }
   const auto mean = [&](const auto& value) {
@@ -266,18 +266,18 @@ void MeasureTables::add_shape(const Frame& frame) {
              volume.deviation,
              asphericity.mean,
              asphericity.deviation,
-             mean([](const GrainShape& s) { return s.grown.n_facets(); }),
-             mean([](const GrainShape& s) { return s.grown.n_facets() == 12; }),
-             mean([](const GrainShape& s) { return s.grown.faceted_share(); }),
-             mean([](const GrainShape& s) { return s.transitive.n_facets(); }),
-             mean([](const GrainShape& s) { return s.transitive.faceted_share(); })};
+             mean([](const GrainShape& s) { return s.grown.n_facets; }),
+             mean([](const GrainShape& s) { return s.grown.n_facets == 12; }),
+             mean([](const GrainShape& s) { return s.grown.faceted_share; }),
+             mean([](const GrainShape& s) { return s.transitive.n_facets; }),
+             mean([](const GrainShape& s) { return s.transitive.faceted_share; })};
   const auto undeformed = [&](const auto& value) { row.push_back(undeformed_mean(undeformed_, value)); };
   undeformed([](const GrainShape& s) { return s.shape.volume; });
   undeformed([](const GrainShape& s) { return s.shape.asphericity; });
-  undeformed([](const GrainShape& s) { return s.grown.n_facets(); });
-  undeformed([](const GrainShape& s) { return s.grown.faceted_share(); });
-  undeformed([](const GrainShape& s) { return s.transitive.n_facets(); });
-  undeformed([](const GrainShape& s) { return s.transitive.faceted_share(); });
+  undeformed([](const GrainShape& s) { return s.grown.n_facets; });
+  undeformed([](const GrainShape& s) { return s.grown.faceted_share; });
+  undeformed([](const GrainShape& s) { return s.transitive.n_facets; });
+  undeformed([](const GrainShape& s) { return s.transitive.faceted_share; });
   write("shape", frame.snapshot, row);
   note("volume_mean_d3", frame.snapshot, volume.mean);
   note("asphericity_mean", frame.snapshot, asphericity.mean);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/app/measure/frame_measures.h"
 #include "bpm/app/measure/frame_stress.h"
 #include "bpm/app/measure/grain_shapes.h"
-#include "bpm/measure/measure_plan.h"
 #include "bpm/io/table.h"
+#include "bpm/measure/measure_plan.h"
 #include "bpm/measure/non_affine.h"
 #include "bpm/measure/stress.h"
 
@@ -18,17 +19,24 @@ namespace boba {
 
 /// Measures frames and writes what was found into the tables of one folder.
 ///
-/// Tables, columns and units: docs/formats-measure.md. Frames are given in the order of time.
+/// Tables, columns and units: docs/formats-measure.md. Frames are given in the order of time. With several ranks all
+/// have one alike: what takes long they measure together (measure_together), the rest and the tables are rank 0's.
 class MeasureTables {
 public:
   /// \param last_step with FileMode::append: rows after this step are removed, and the tables go on
+  /// \param ranks must outlive this
   /// \throws std::runtime_error when a table exists (FileMode::create) or cannot be written.
-  MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan, const UndeformedGrains& undeformed,
-                FileMode mode, std::int64_t last_step = -1);
+  MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan,
+                const UndeformedGrains& undeformed, FileMode mode, std::int64_t last_step = -1,
+                const Ranks& ranks = Ranks::alone());
 
+  /// Collective. Positions are needed on every rank when the plan needs_all_ranks, all else on rank 0.
+  /// \throws std::invalid_argument for a frame that cannot be measured, std::runtime_error when a table cannot be
+  /// written; RankError on all when there are several ranks.
   void add(const Snapshot& snapshot);
 
-  /// Forces evaluated anew: used for the stress instead of what the frames hold. Null: what the frames hold.
+  /// Forces evaluated anew: used for the stress instead of what the frames hold. Null: what the frames hold. With
+  /// several ranks all are given one, and every frame whole.
   void set_frame_stress(std::shared_ptr<FrameStress> stress) { frame_stress_ = std::move(stress); }
 
   /// What `motion` remembers of the frames so far, so that a run that goes on continues its tables.
@@ -45,11 +53,12 @@ public:
 private:
   using Row = std::vector<std::optional<double>>;
 
-  /// Hulls are needed by several measures: made once a frame, when the first asks.
+  /// A frame and what is known of it so far.
   struct Frame {
     const Snapshot& snapshot;
-    measure::GrainNodes grains;
-    std::vector<measure::ConvexHull> hulls;
+    FrameMeasures found;
+    std::vector<measure::Tensor6> grain_stress; ///< times the volume, k d
+    std::vector<Vector3> centres;               ///< for order and motion, as are the neighbours
     measure::NeighbourLists neighbours;
   };
 
@@ -59,7 +68,8 @@ private:
   void note(const std::string& quantity, const Snapshot& snapshot, double value);
   double grain_number(int grain) const;
 
-  void add_stress(const Snapshot& snapshot);
+  void write_frame(Frame& frame);
+  void add_stress(const Frame& frame);
   void add_packing_fraction(const Frame& frame);
   void add_shape(const Frame& frame);
   void add_facet_sensitivity(const Frame& frame);
@@ -84,6 +94,7 @@ private:
   std::filesystem::path folder_;
   const Topology topology_;
   MeasurePlan plan_;
+  const Ranks& ranks_;
   std::shared_ptr<FrameStress> frame_stress_;
   std::map<std::string, TableWriter> tables_;
   std::map<std::string, Series> series_;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The measures of structure and motion; those of stress and shape are in measure_tables.cpp.
 #include "bpm/app/measure/measure_tables.h"
-#include "bpm/measure/contact_network.h"
-#include "bpm/measure/parallel_loop.h"
 
 #include <algorithm>
 #include <array>
@@ -14,31 +12,26 @@ namespace boba {
 using namespace measure;
 
 void MeasureTables::add_facet_sensitivity(const Frame& frame) {
-  for (const double cosine : {0.98, 0.985, 0.99, 0.995}) {
-    for (const double area_share : {0.005, 0.01, 0.02}) {
-      const FacetOptions options{cosine, area_share};
-      const double n = static_cast<double>(frame.hulls.size());
-      std::vector<Facets> facets(frame.hulls.size());
-      parallel_loop(static_cast<std::int64_t>(facets.size()),
-                    [&](std::int64_t g) { facets[g] = grown_facets(frame.hulls[g], options); });
-      double count = 0.0, share = 0.0;
-      for (const Facets& of_grain : facets) {
-        count += of_grain.n_facets() / n;
-        share += of_grain.faceted_share() / n;
-      }
-      const auto of_undeformed = [&](const auto& value) {
-        return undeformed_mean(undeformed_hulls_,
-                               [&](const ConvexHull& hull) { return value(grown_facets(hull, options)); });
-      };
-      write("facet_sensitivity", frame.snapshot,
-            {cosine, area_share, count, share, of_undeformed([](const Facets& f) { return f.n_facets(); }),
-             of_undeformed([](const Facets& f) { return f.faceted_share(); })});
+  for (const auto& [options, grains] : frame.found.sensitivity) {
+    const double n = static_cast<double>(grains.size());
+    double count = 0.0, share = 0.0;
+    for (const FacetSummary& grain : grains) {
+      count += grain.n_facets / n;
+      share += grain.faceted_share / n;
     }
+    std::vector<std::optional<FacetSummary>> undeformed;
+    for (const auto& hull : undeformed_hulls_) {
+      undeformed.push_back(hull ? std::optional(summary_of(grown_facets(*hull, options))) : std::nullopt);
+    }
+    write("facet_sensitivity", frame.snapshot,
+          {options.min_cosine, options.min_area_share, count, share,
+           undeformed_mean(undeformed, [](const FacetSummary& f) { return f.n_facets; }),
+           undeformed_mean(undeformed, [](const FacetSummary& f) { return f.faceted_share; })});
   }
 }
 
 void MeasureTables::add_scattering(const Frame& frame) {
-  for (const ScatteringShell& shell : measure::scattering(frame.snapshot.box, frame.grains, plan_.scattering)) {
+  for (const ScatteringShell& shell : frame.found.scattering) {
     write("scattering", frame.snapshot,
           {shell.q, static_cast<double>(shell.n_vectors), shell.intensity, shell.form_factor,
            std::isfinite(shell.structure) ? std::optional(shell.structure) : std::nullopt});
@@ -69,7 +62,7 @@ void MeasureTables::add_order(const Frame& frame) {
 }
 
 void MeasureTables::add_contacts(const Frame& frame) {
-  const std::vector<GrainContact> contacts = contact_network(frame.snapshot.box, frame.grains, plan_.material);
+  const std::vector<GrainContact>& contacts = frame.found.contacts;
   double area = 0.0, force = 0.0;
   for (const GrainContact& c : contacts) {
     Row row = {grain_number(c.grain), grain_number(c.other)};
@@ -85,7 +78,7 @@ void MeasureTables::add_contacts(const Frame& frame) {
     area += c.area / static_cast<double>(contacts.size());
     force += c.force.norm() / static_cast<double>(contacts.size());
   }
-  const Coordination z = measure::coordination(frame.grains.n_grains(), contacts);
+  const Coordination z = measure::coordination(topology_.n_grains(), contacts);
   const Matrix3 fabric = fabric_tensor(contacts);
   write("coordination", frame.snapshot,
         {z.mean, z.mean_without_rattlers, static_cast<double>(z.n_rattlers), area, force, fabric(0, 0), fabric(1, 1),
@@ -95,7 +88,7 @@ void MeasureTables::add_contacts(const Frame& frame) {
 
 void MeasureTables::add_motion(const Frame& frame) {
   const Snapshot& snapshot = frame.snapshot;
-  const auto centres = grain_centres(frame.grains);
+  const std::vector<Vector3>& centres = frame.centres;
   if (!past_) {
     past_.emplace(
         Past{snapshot.box, snapshot.strain, centres, frame.neighbours, NonAffineMotion(snapshot.box, centres)});
