@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/frame_observer.h"
 
-#include "bpm/dynamics/simulation.h"
-
 namespace boba {
 
 bool FrameObserver::wants(const StepForecast& forecast) {
@@ -15,7 +13,7 @@ void FrameObserver::observe(const Simulation& simulation, const StageProgress&) 
     return; // the end of one stage is the beginning of the next
   }
   last_step_ = simulation.step();
-  write_(simulation.snapshot({.velocity = velocities_}));
+  write_(simulation.snapshot(parts_));
 }
 
 } // namespace boba

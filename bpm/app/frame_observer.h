@@ -3,6 +3,7 @@
 
 #include "bpm/app/schedule.h"
 #include "bpm/dynamics/observer.h"
+#include "bpm/dynamics/simulation.h"
 #include "bpm/packing/snapshot.h"
 
 #include <functional>
@@ -14,8 +15,8 @@ class FrameObserver : public Observer {
 public:
   using Write = std::function<void(const Snapshot&)>;
   /// `last_step`: of the frame that was written last, for a run that goes on; -1 for a new one.
-  FrameObserver(const Schedule& schedule, bool velocities, std::int64_t last_step, Write write)
-      : schedule_(schedule), velocities_(velocities), last_step_(last_step), write_(std::move(write)) {}
+  FrameObserver(const Schedule& schedule, Simulation::Parts parts, std::int64_t last_step, Write write)
+      : schedule_(schedule), parts_(parts), last_step_(last_step), write_(std::move(write)) {}
 
   bool wants(const StepForecast& forecast) override;
   void observe(const Simulation& simulation, const StageProgress& progress) override;
@@ -23,7 +24,7 @@ public:
 
 private:
   Schedule schedule_;
-  bool velocities_;
+  Simulation::Parts parts_;
   std::int64_t last_step_;
   Write write_;
 };

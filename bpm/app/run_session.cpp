@@ -155,7 +155,7 @@ private:
 
   ExitCode finish() {
     if (writers_.trajectory) {
-      writers_.trajectory->close();
+      ranks_.together([&] { writers_.trajectory->close(); });
     }
     const Timings t = simulation_.timings();
     log_.note(fmt::format(

@@ -26,13 +26,13 @@ std::int64_t last_step_of(const RunSetup& setup, std::size_t writer) {
   return setup.restart && writer < setup.restart->last_steps.size() ? setup.restart->last_steps[writer] : -1;
 }
 
-std::shared_ptr<TrajectoryWriter> trajectory_writer(const RunSetup& setup, const Simulation& simulation, const FrameOutput& output,
-                                       std::int64_t last_step) {
+TrajectoryWriter trajectory_writer(const RunSetup& setup, const Simulation& simulation, const FrameOutput& output,
+                                   std::int64_t last_step, bool nodes_by_others) {
   const Topology topology = simulation.packing().topology(true);
   const std::filesystem::path path = setup.folder.trajectory();
   // Before its first frame the file has nothing to be kept, and if that frame was cut off HDF5 cannot read it at all.
   if (setup.restart && last_step >= 0) {
-    return std::make_shared<TrajectoryWriter>(TrajectoryWriter::go_on(path, topology, last_step));
+    return TrajectoryWriter::go_on(path, topology, last_step, nodes_by_others);
   }
   TrajectoryOrigin origin;
   origin.scene = with_overrides(setup.scene);
@@ -41,8 +41,9 @@ std::shared_ptr<TrajectoryWriter> trajectory_writer(const RunSetup& setup, const
   origin.git_hash = git_hash();
   TrajectoryOptions options;
   options.velocity = output.velocities;
+  options.nodes_by_others = nodes_by_others;
   const FileMode mode = setup.restart ? FileMode::overwrite : FileMode::create;
-  return std::make_shared<TrajectoryWriter>(path, topology, origin, options, mode);
+  return {path, topology, origin, options, mode};
 }
 
 FrameObserver::Write dump_writer(const RunSetup& setup, const std::shared_ptr<const Topology>& topology,
@@ -83,10 +84,10 @@ template <class MakeSchedule>
 void follow_writers(RunWriters& writers, const RunSetup& setup, const MakeSchedule& schedule) {
   const auto add = [&](const OutputInterval& every, bool velocities) {
     writers.frames.push_back(std::make_unique<FrameObserver>(
-        schedule(every), velocities, last_step_of(setup, writers.frames.size() + 1), [](const Snapshot&) {}));
+        schedule(every), Simulation::Parts{.velocity = velocities}, last_step_of(setup, writers.frames.size() + 1), [](const Snapshot&) {}));
   };
   const OutputPlan& plan = setup.scene.output;
-  for (const auto* output : {&plan.trajectory, &plan.dump, &plan.vtk}) {
+  for (const auto* output : {&plan.dump, &plan.vtk}) {
     if (*output) {
       add((*output)->every, (*output)->velocities);
     }
@@ -122,21 +123,25 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
   writers.table =
       std::make_unique<TableObserver>(std::move(table), schedule(plan.table), numbers, last_step_of(setup, 0));
 
+  // Files are cut behind what the checkpoint knows of, not at its step: rows of the same step may have come later.
+  const auto last_step = [&] { return last_step_of(setup, writers.frames.size() + 1); };
+  const auto add = [&](const FrameOutput& output, FrameObserver::Write write, bool own = false) {
+    writers.frames.push_back(std::make_unique<FrameObserver>(
+        schedule(output.every), Simulation::Parts{.velocity = output.velocities, .own = own}, last_step(),
+        std::move(write)));
+  };
+  if (plan.trajectory) {
+    writers.trajectory = std::make_shared<SharedTrajectory>(
+        simulation.ranks(), setup.folder.trajectory(), simulation.packing().first_nodes(), [&](bool nodes_by_others) {
+          return trajectory_writer(setup, simulation, *plan.trajectory, last_step(), nodes_by_others);
+        });
+    add(*plan.trajectory, [writer = writers.trajectory](const Snapshot& own) { writer->write(own); }, true);
+  }
   if (!writes) {
     follow_writers(writers, setup, schedule);
     return writers;
   }
   const auto topology = std::make_shared<const Topology>(simulation.packing().topology(false));
-  // Files are cut behind what the checkpoint knows of, not at its step: rows of the same step may have come later.
-  const auto last_step = [&] { return last_step_of(setup, writers.frames.size() + 1); };
-  const auto add = [&](const FrameOutput& output, FrameObserver::Write write) {
-    writers.frames.push_back(std::make_unique<FrameObserver>(
-        schedule(output.every), output.velocities, last_step(), std::move(write)));
-  };
-  if (plan.trajectory) {
-    writers.trajectory = trajectory_writer(setup, simulation, *plan.trajectory, last_step());
-    add(*plan.trajectory, [writer = writers.trajectory](const Snapshot& snapshot) { writer->write(snapshot); });
-  }
   if (plan.dump) {
     add(*plan.dump, dump_writer(setup, topology, last_step()));
   }

@@ -98,8 +98,9 @@ public:
   struct Parts {
     bool velocity = false;
     bool force = false;
+    bool own = false; ///< with several ranks: no gathering, each has the nodes of its own grains (Snapshot::grains)
   };
-  /// Nodes and stresses of grains are there on rank 0 alone.
+  /// Nodes and stresses of grains are there on rank 0 alone, if not asked for otherwise.
   Snapshot snapshot(Parts parts) const;
   Snapshot snapshot() const { return snapshot(Parts{}); }
   /// Forces on the two ends of a `press` stage, along z (k d): lower, upper.

@@ -52,12 +52,16 @@ Snapshot Stepper::snapshot(Simulation::Parts parts) const {
     }
     centre /= layout_.n_nodes(g);
   }
-  gather(snapshot.position);
-  if (parts.velocity) {
-    gather(snapshot.velocity);
-  }
-  if (parts.force) {
-    gather(snapshot.force);
+  if (parts.own && ranks().many()) {
+    snapshot.grains = layout_.grains();
+  } else {
+    gather(snapshot.position);
+    if (parts.velocity) {
+      gather(snapshot.velocity);
+    }
+    if (parts.force) {
+      gather(snapshot.force);
+    }
   }
   share_grains(snapshot.grain_centre);
   for (int g = 0; g < layout_.n_grains(); ++g) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/hdf5_file.h"
 
+#include "bpm/io/hdf5_room.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -31,8 +33,11 @@ std::string reason() {
   return text;
 }
 
-Handle access_properties() {
+Handle access_properties(bool with_rooms) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS));
+  if (with_rooms) {
+    use_room_driver(access);
+  }
   // Others may read the file while the run goes on.
   H5Pset_file_locking(access, false, true);
   // Metadata stays in memory until flush(): a process killed between two flushes leaves the file of the last one.
@@ -96,7 +101,7 @@ void File::let_go() const {
   }
 }
 
-File File::create(const std::filesystem::path& path) {
+File File::create(const std::filesystem::path& path, bool with_rooms) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // failures are thrown, not printed
   File file;
   file.path_ = path;
@@ -104,17 +109,17 @@ File File::create(const std::filesystem::path& path) {
   const Handle creation(H5Pcreate(H5P_FILE_CREATE));
   // Wide nodes in the index of chunks: it is split, which touches several places, only once in 1024 frames.
   H5Pset_istore_k(creation, 512);
-  const Handle access = access_properties();
+  const Handle access = access_properties(with_rooms);
   file.id_ = Handle(file.check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), "creating the file"));
   return file;
 }
 
-File File::open(const std::filesystem::path& path, bool writable) {
+File File::open(const std::filesystem::path& path, bool writable, bool with_rooms) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // failures are thrown, not printed
   File file;
   file.path_ = path;
   file.writable_ = writable;
-  const Handle access = access_properties();
+  const Handle access = access_properties(with_rooms);
   file.id_ = Handle(
       file.check(H5Fopen(path.c_str(), writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access), "opening the HDF5 file"));
   return file;

@@ -37,6 +37,8 @@ struct Topology {
 /// The state of a packing at one step, in plain arrays indexed by global node number: what every writer and every
 /// measure reads. Positions are unwrapped; the image flags of a file are `box.image_of(x)`.
 struct Snapshot {
+  /// The grains whose nodes the arrays of nodes hold, one after the other; empty where that is all of them.
+  std::vector<int> grains;
   std::int64_t step = 0;
   double time = 0.0;   ///< tau
   double strain = 0.0; ///< accumulated shear strain

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace boba {
 
@@ -39,6 +40,23 @@ void Ranks::broadcast_bytes(void* values, std::size_t bytes) const {
     MPI_Bcast(static_cast<char*>(values) + done, static_cast<int>(std::min(most, bytes - done)), MPI_BYTE, 0,
               MPI_COMM_WORLD);
   }
+}
+
+std::vector<int> Ranks::counts_of_ranks(std::size_t own) const {
+  const int mine = static_cast<int>(own);
+  std::vector<int> counts(size_);
+  MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, MPI_COMM_WORLD);
+  return counts;
+}
+
+void Ranks::gather(const void* own, const std::vector<int>& counts, std::size_t bytes, void* all) const {
+  std::vector<int> starts(size_, 0);
+  std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
+  MPI_Datatype item = MPI_DATATYPE_NULL; // counted with an int, so a value is an item
+  MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &item);
+  MPI_Type_commit(&item);
+  MPI_Gatherv(own, counts[rank_], item, all, counts.data(), starts.data(), item, 0, MPI_COMM_WORLD);
+  MPI_Type_free(&item);
 }
 
 void Ranks::share_rows(std::span<double> table, int width, const Ownership& ownership) const {

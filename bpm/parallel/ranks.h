@@ -4,6 +4,7 @@
 #include "bpm/parallel/ownership.h"
 
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -61,6 +62,17 @@ public:
     }
   }
 
+  /// The values of all ranks on rank 0, one rank's after the other; elsewhere nothing.
+  template <class T> std::vector<T> gathered(const std::vector<T>& own) const {
+    if (!many()) {
+      return own;
+    }
+    const std::vector<int> counts = counts_of_ranks(own.size());
+    std::vector<T> all(is_root() ? std::accumulate(counts.begin(), counts.end(), std::size_t{0}) : 0);
+    gather(own.data(), counts, sizeof(T), all.data());
+    return all;
+  }
+
   /// A table of one row a grain, whose owners have filled in theirs: afterwards all ranks have all rows.
   void share_rows(std::span<double> table, int width, const Ownership& ownership) const;
 
@@ -90,6 +102,8 @@ private:
   };
   Ranks(int rank, int size) : rank_(rank), size_(size) {}
   void agree(const Failure& failure) const;
+  std::vector<int> counts_of_ranks(std::size_t own) const;
+  void gather(const void* own, const std::vector<int>& counts, std::size_t bytes, void* all) const;
 
   int rank_ = 0, size_ = 1;
 };
