@@ -312,7 +312,8 @@ void File::write_frame_raw(const std::string& name, hsize_t frame, const void* v
   start[0] = frame;
   count[0] = 1;
   H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
-  const Handle memory = simple_space({n});
+  // Of the frame's own shape: otherwise HDF5 goes through its chunk number by number.
+  const Handle memory = simple_space(count);
   check(H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, values), "writing " + name);
   close_dataset(dataset, name);
 }
@@ -325,7 +326,7 @@ void File::read_frame_raw(const std::string& name, hsize_t frame, void* values, 
   count[0] = 1;
   check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
         "selecting in " + name);
-  const Handle memory = simple_space({product(count)});
+  const Handle memory = simple_space(count);
   check(H5Dread(dataset, type, memory, space, H5P_DEFAULT, values), "reading " + name);
 }
 
