@@ -204,6 +204,10 @@ int Simulation::stage_index() const {
   return impl_->stage_index;
 }
 
+std::span<const int> Simulation::own_grains() const {
+  return impl_->stepper.layout().grains();
+}
+
 SavedState Simulation::save() const {
   SavedState saved;
   impl_->stepper.save(saved);

@@ -108,8 +108,11 @@ public:
   /// Distance between the two ends (walls or clamps) at present, d; 0 when there are none.
   double end_gap() const;
 
-  /// Everything is there on rank 0 alone; the same for any number of ranks.
+  /// The same for any number of ranks: of `position`, `velocity` and `force` each rank has the nodes of its own grains
+  /// (own_grains), everything else is there on rank 0.
   SavedState save() const;
+  /// Grains that this rank owns, ascending; with one rank all.
+  std::span<const int> own_grains() const;
   /// Rank 0's state for all. \throws std::runtime_error when the state does not belong to this packing.
   void restore(const SavedState& state);
   /// Index of the stage that a restored state is in (or that comes next).

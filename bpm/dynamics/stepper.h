@@ -110,7 +110,7 @@ public:
 
 private:
   PlacementInput placement_input() const;
-  std::vector<std::byte> gathered_nodes() const;
+  std::vector<std::byte> own_nodes() const;
   void scatter_nodes(const std::vector<std::byte>& all);
   /// Values of this rank's nodes become those of all nodes, on rank 0.
   void gather(std::vector<Vector3>& values) const;

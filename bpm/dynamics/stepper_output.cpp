@@ -150,9 +150,9 @@ void Stepper::save(SavedState& saved) const {
   save_ends(saved);
 }
 
-// Node by node in the packing's order: the same whatever the lanes and the ranks.
+// Node by node in the packing's order, each rank its own: put together the same whatever the lanes and the ranks.
 void Stepper::save_nodes(SavedState& saved) const {
-  const std::vector<std::byte> nodes = gathered_nodes();
+  const std::vector<std::byte> nodes = own_nodes();
   if (options_.precision == Precision::full) {
     unpack_columns<double, double>(nodes, saved.real["position"], saved.real["velocity"], saved.real["force"]);
     return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/shared_trajectory.h"
 
+#include "bpm/io/node_runs.h"
 #include "bpm/io/wrapped_nodes.h"
 
 #include <algorithm>
@@ -10,41 +11,24 @@ namespace boba {
 
 namespace {
 
-/// Nodes that lie one after the other in the file and here.
-struct Run {
-  std::int64_t first = 0; ///< in the packing's order
-  std::int64_t n = 0;
-};
-
-std::vector<Run> runs_of(const std::vector<int>& grains, const std::vector<std::int64_t>& first_node) {
-  std::vector<Run> runs;
-  for (const int g : grains) {
-    const std::int64_t first = first_node[g], n = first_node[g + 1] - first;
-    if (!runs.empty() && runs.back().first + runs.back().n == first) {
-      runs.back().n += n;
-    } else {
-      runs.push_back({first, n});
-    }
-  }
-  return runs;
-}
-
 /// `values`: `per_node` for each node of the runs.
 template <class T>
-void write_rows(SharedFile& file, std::uint64_t place, const std::vector<Run>& runs, const T* values, int per_node) {
+void write_rows(SharedFile& file, std::uint64_t place, const std::vector<NodeRun>& runs, const T* values,
+                int per_node) {
   const std::uint64_t width = per_node * sizeof(T);
   const char* from = reinterpret_cast<const char*>(values);
-  for (const Run& run : runs) {
+  for (const NodeRun& run : runs) {
     file.write(place + run.first * width, from, run.n * width);
     from += run.n * width;
   }
 }
 
 /// Rows of the ranks' nodes, one rank's after the other, in the packing's order.
-std::vector<Vector3> in_order(const std::vector<Vector3>& rows, const std::vector<Run>& runs, std::int64_t n_nodes) {
+std::vector<Vector3> in_order(const std::vector<Vector3>& rows, const std::vector<NodeRun>& runs,
+                              std::int64_t n_nodes) {
   std::vector<Vector3> result(n_nodes);
   auto from = rows.begin();
-  for (const Run& run : runs) {
+  for (const NodeRun& run : runs) {
     std::copy_n(from, run.n, result.begin() + run.first);
     from += run.n;
   }
@@ -113,9 +97,9 @@ void SharedTrajectory::write_together(const Snapshot& own) {
 }
 
 void SharedTrajectory::write_nodes(const Snapshot& own, const TrajectoryWriter::NodePlaces& places) {
-  const std::vector<Run> runs = runs_of(own.grains, first_node_);
+  const std::vector<NodeRun> runs = node_runs(own.grains, first_node_);
   std::size_t n = 0;
-  for (const Run& run : runs) {
+  for (const NodeRun& run : runs) {
     n += static_cast<std::size_t>(run.n);
   }
   if (own.position.size() != n || (places.velocity > 0 && own.velocity.size() != n)) {
@@ -134,7 +118,7 @@ void SharedTrajectory::write_gathered(const Snapshot& own) {
   std::vector<Vector3> position = ranks_.gathered(own.position), velocity = ranks_.gathered(own.velocity);
   ranks_.together([&] {
     if (ranks_.is_root()) {
-      const std::vector<Run> runs = runs_of(grains, first_node_);
+      const std::vector<NodeRun> runs = node_runs(grains, first_node_);
       Snapshot whole = own;
       whole.position = in_order(position, runs, first_node_.back());
       whole.velocity = velocity.empty() ? velocity : in_order(velocity, runs, first_node_.back());

@@ -43,6 +43,10 @@ TEST(ProgramOnRanks, WritesTheSameFiles) {
     EXPECT_EQ(count_of(result.out, "done at step"), 1) << result.out;
     EXPECT_NE(result.out.find(out + " ranks of "), std::string::npos) << result.out;
     expect_same_run(folder / "alone", folder / out);
+    const auto checkpoint = [&](const std::string& run) {
+      return content_of(latest_checkpoint(folder / run / "checkpoints").path);
+    };
+    EXPECT_TRUE(checkpoint("alone") == checkpoint(out)) << "the last checkpoints differ";
     for (const auto& entry : std::filesystem::directory_iterator(folder / "alone" / "measures")) {
       EXPECT_TRUE(content_of(entry.path()) == content_of(folder / out / "measures" / entry.path().filename()))
           << entry.path();

@@ -82,6 +82,25 @@ TEST_F(WriteErrorsOnRanks, InTheTrajectoryAreToldOnceAndLoseNothing) {
   }
 }
 
+// Each rank writes its nodes of three entries, then syncs; rank 0 also makes the file, and gives it its name in the end.
+TEST_F(WriteErrorsOnRanks, InACheckpointLeaveTheOneBefore) {
+  struct Case {
+    int rank, at;
+    bool later_too;
+  };
+  int ranks_after = 0;
+  for (const Case& c : {Case{1, 15, false}, Case{2, 22, true}, Case{0, 25, false}, Case{0, 45, true}}) {
+    SCOPED_TRACE("rank " + std::to_string(c.rank) + ", call " + std::to_string(c.at));
+    const ProgramResult result = on(3, "faulty", fault(c.rank, "checkpoint-", c.at, c.later_too));
+    EXPECT_NE(result.err.find("checkpoint not written"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("the last one remains"), std::string::npos) << result.err;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "faulty/checkpoints")) {
+      EXPECT_NE(entry.path().extension(), ".part");
+    }
+    expect_message_and_same_end(result, "checkpoint-", 1 + ranks_after++ % 3);
+  }
+}
+
 TEST_F(WriteErrorsOnRanks, AFileThatMayNotGrowIsAMessage) {
   // In blocks of 512 bytes; the trajectory is the largest file. MPI's own files of shared memory would be larger still.
   const ProgramResult result = on(2, "faulty", "export OMPI_MCA_btl=self,tcp; trap '' XFSZ; ulimit -f 5800; ");

@@ -95,6 +95,16 @@ TEST(Checkpoint, RefusesAFlippedBitInAnyByte) {
   EXPECT_NO_THROW(read_checkpoint(folder.file("same.boba", whole)));
 }
 
+TEST(Checkpoint, RefusesThatOfAnOlderVersion) {
+  const TemporaryFolder folder;
+  std::string bytes = content_of(write_checkpoint(folder / "", sample(1)));
+  bytes.replace(0, 8, "BOBACKP1");
+  const auto path = folder.file("old.boba", bytes);
+  const std::string message = message_of<InputError>([&] { read_checkpoint(path); });
+  EXPECT_NE(message.find("older"), std::string::npos) << message;
+  EXPECT_NE(message.find("BOBACKP1"), std::string::npos) << message;
+}
+
 TEST(Checkpoint, OffersTheOlderOneAndKeepsIt) {
   const TemporaryFolder folder;
   write_checkpoint(folder / "", sample(1));
