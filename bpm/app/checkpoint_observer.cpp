@@ -20,7 +20,9 @@ const std::string packing_prefix = "packing/";
 const std::string last_steps_name = "output/last_steps";
 const std::string motion_name = "output/motion";
 
-bool is_simulation_name(const std::string& name) { return name.find('/') == std::string::npos && name != "modulus"; }
+bool is_simulation_name(const std::string& name) {
+  return name.find('/') == std::string::npos && name != "modulus";
+}
 
 std::vector<double> flat(const std::vector<Vector3>& vectors) {
   std::vector<double> numbers;
@@ -119,7 +121,8 @@ Packing read_packing(const CheckpointData& data) {
   packing.box.set_h(Eigen::Map<const Matrix3>(h.data()));
   const std::vector<std::int64_t>& grains = data.integer.at(p + "grains");
   const std::vector<double>& alpha = data.real.at(p + "alpha");
-  require(grains.size() == 3 * alpha.size() && !alpha.empty() && all_finite(alpha), "grains without a template or alpha");
+  require(grains.size() == 3 * alpha.size() && !alpha.empty() && all_finite(alpha),
+          "grains without a template or alpha");
   for (std::size_t g = 0; g < alpha.size(); ++g) {
     require(grains[3 * g] >= 0 && grains[3 * g] < static_cast<std::int64_t>(packing.templates.size()),
             "a grain names a template that is not there");
@@ -260,9 +263,6 @@ std::filesystem::path CheckpointObserver::write(const Simulation& simulation) {
   std::erase_if(data_.integer, belongs_to_simulation);
   SavedState state = simulation.save();
   last_ = now_;
-  if (!simulation.ranks().is_root()) {
-    return {};
-  }
   for (auto& [name, values] : state.real) {
     data_.real[name] = std::move(values);
   }
@@ -270,7 +270,10 @@ std::filesystem::path CheckpointObserver::write(const Simulation& simulation) {
     data_.integer[name] = std::move(values);
   }
   store_writers_(data_);
-  return write_checkpoint(folder_, data_);
+  const std::vector<std::int64_t> first_node = simulation.packing().first_nodes();
+  return write_checkpoint(
+      folder_, data_, simulation.ranks(),
+      {{of_nodes.begin(), of_nodes.end()}, node_runs(simulation.own_grains(), first_node), first_node.back()});
 }
 
 } // namespace boba

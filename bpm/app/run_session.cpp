@@ -21,9 +21,10 @@ void check_instruction_sets(const Simulation& simulation, const Ranks& ranks) {
   std::string of_root = simulation.instruction_set();
   ranks.broadcast(of_root);
   if (of_root != simulation.instruction_set()) {
-    throw std::runtime_error(fmt::format("this rank's machine computes with {}, rank 0's with {}; set BOBA_ISA to what both "
-                                         "have (baseline, avx2 or avx512)",
-                                         simulation.instruction_set(), of_root));
+    throw std::runtime_error(
+        fmt::format("this rank's machine computes with {}, rank 0's with {}; set BOBA_ISA to what both "
+                    "have (baseline, avx2 or avx512)",
+                    simulation.instruction_set(), of_root));
   }
 }
 
@@ -155,17 +156,17 @@ private:
 
   ExitCode finish() {
     if (writers_.trajectory) {
-      writers_.trajectory->close();
+      ranks_.together([&] { writers_.trajectory->close(); });
     }
     const Timings t = simulation_.timings();
-    log_.note(fmt::format(
-        "seconds: bonds {:.2f}, contacts {:.2f}, search {:.2f}, integration {:.2f}; {} steps, {} "
-        "contact lists",
-        t.bonds, t.contacts, t.search, t.integration, t.steps, t.list_builds));
+    log_.note(fmt::format("seconds: bonds {:.2f}, contacts {:.2f}, search {:.2f}, integration {:.2f}; {} steps, {} "
+                          "contact lists",
+                          t.bonds, t.contacts, t.search, t.integration, t.steps, t.list_builds));
     if (ranks_.many()) {
-      log_.note(fmt::format("rank 0: halo {:.2f} s, reductions {:.2f} s; received {} messages, {} bytes of nodes; {} halos, {} "
-                            "grains moved here",
-                            t.halo, t.reductions, t.halo_messages, t.halo_bytes, t.halo_builds, t.migrated_grains));
+      log_.note(fmt::format(
+          "rank 0: halo {:.2f} s, reductions {:.2f} s; received {} messages, {} bytes of nodes; {} halos, {} "
+          "grains moved here",
+          t.halo, t.reductions, t.halo_messages, t.halo_bytes, t.halo_builds, t.migrated_grains));
     }
     log_.say(fmt::format("done at step {}; results in {}", simulation_.step(), setup_.folder.root().string()));
     return ExitCode::done;

@@ -26,13 +26,13 @@ std::int64_t last_step_of(const RunSetup& setup, std::size_t writer) {
   return setup.restart && writer < setup.restart->last_steps.size() ? setup.restart->last_steps[writer] : -1;
 }
 
-std::shared_ptr<TrajectoryWriter> trajectory_writer(const RunSetup& setup, const Simulation& simulation, const FrameOutput& output,
-                                       std::int64_t last_step) {
+TrajectoryWriter trajectory_writer(const RunSetup& setup, const Simulation& simulation, const FrameOutput& output,
+                                   std::int64_t last_step, bool nodes_by_others) {
   const Topology topology = simulation.packing().topology(true);
   const std::filesystem::path path = setup.folder.trajectory();
   // Before its first frame the file has nothing to be kept, and if that frame was cut off HDF5 cannot read it at all.
   if (setup.restart && last_step >= 0) {
-    return std::make_shared<TrajectoryWriter>(TrajectoryWriter::go_on(path, topology, last_step));
+    return TrajectoryWriter::go_on(path, topology, last_step, nodes_by_others);
   }
   TrajectoryOrigin origin;
   origin.scene = with_overrides(setup.scene);
@@ -41,8 +41,9 @@ std::shared_ptr<TrajectoryWriter> trajectory_writer(const RunSetup& setup, const
   origin.git_hash = git_hash();
   TrajectoryOptions options;
   options.velocity = output.velocities;
+  options.nodes_by_others = nodes_by_others;
   const FileMode mode = setup.restart ? FileMode::overwrite : FileMode::create;
-  return std::make_shared<TrajectoryWriter>(path, topology, origin, options, mode);
+  return {path, topology, origin, options, mode};
 }
 
 FrameObserver::Write dump_writer(const RunSetup& setup, const std::shared_ptr<const Topology>& topology,
@@ -60,8 +61,7 @@ FrameObserver::Write vtk_writer(const RunSetup& setup, const std::shared_ptr<con
                                 std::int64_t last_step) {
   const std::filesystem::path path = setup.folder.vtk() / "packing.pvd";
   std::filesystem::create_directories(setup.folder.vtk());
-  auto series =
-      std::make_shared<VtkSeries>(setup.restart ? VtkSeries::go_on(path, last_step) : VtkSeries(path));
+  auto series = std::make_shared<VtkSeries>(setup.restart ? VtkSeries::go_on(path, last_step) : VtkSeries(path));
   return [series, topology](const Snapshot& snapshot) { series->write(*topology, snapshot); };
 }
 
@@ -81,7 +81,7 @@ std::shared_ptr<MeasureTables> measure_tables(const RunSetup& setup, const Simul
 template <class MakeSchedule>
 void follow_writers(RunWriters& writers, const RunSetup& setup, const MakeSchedule& schedule) {
   const OutputPlan& plan = setup.scene.output;
-  for (const auto* output : {&plan.trajectory, &plan.dump, &plan.vtk}) {
+  for (const auto* output : {&plan.dump, &plan.vtk}) {
     if (*output) {
       writers.frames.push_back(std::make_unique<FrameObserver>(
           schedule((*output)->every), Simulation::Parts{.velocity = (*output)->velocities},
@@ -134,27 +134,31 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
   writers.table =
       std::make_unique<TableObserver>(std::move(table), schedule(plan.table), numbers, last_step_of(setup, 0));
 
-  if (!writes) {
-    follow_writers(writers, setup, schedule);
-    add_measures(writers, setup, simulation, schedule);
-    return writers;
-  }
-  const auto topology = std::make_shared<const Topology>(simulation.packing().topology(false));
   // Files are cut behind what the checkpoint knows of, not at its step: rows of the same step may have come later.
   const auto last_step = [&] { return last_step_of(setup, writers.frames.size() + 1); };
-  const auto add = [&](const FrameOutput& output, FrameObserver::Write write) {
+  const auto add = [&](const FrameOutput& output, FrameObserver::Write write, bool own = false) {
     writers.frames.push_back(std::make_unique<FrameObserver>(
-        schedule(output.every), Simulation::Parts{.velocity = output.velocities}, last_step(), std::move(write)));
+        schedule(output.every), Simulation::Parts{.velocity = output.velocities, .own = own}, last_step(),
+        std::move(write)));
   };
   if (plan.trajectory) {
-    writers.trajectory = trajectory_writer(setup, simulation, *plan.trajectory, last_step());
-    add(*plan.trajectory, [writer = writers.trajectory](const Snapshot& snapshot) { writer->write(snapshot); });
+    writers.trajectory = std::make_shared<SharedTrajectory>(
+        simulation.ranks(), setup.folder.trajectory(), simulation.packing().first_nodes(), [&](bool nodes_by_others) {
+          return trajectory_writer(setup, simulation, *plan.trajectory, last_step(), nodes_by_others);
+        });
+    add(
+        *plan.trajectory, [writer = writers.trajectory](const Snapshot& own) { writer->write(own); }, true);
   }
-  if (plan.dump) {
-    add(*plan.dump, dump_writer(setup, topology, last_step()));
-  }
-  if (plan.vtk) {
-    add(*plan.vtk, vtk_writer(setup, topology, last_step()));
+  if (writes) {
+    const auto topology = std::make_shared<const Topology>(simulation.packing().topology(false));
+    if (plan.dump) {
+      add(*plan.dump, dump_writer(setup, topology, last_step()));
+    }
+    if (plan.vtk) {
+      add(*plan.vtk, vtk_writer(setup, topology, last_step()));
+    }
+  } else {
+    follow_writers(writers, setup, schedule);
   }
   add_measures(writers, setup, simulation, schedule);
   return writers;

@@ -5,7 +5,7 @@
 #include "bpm/app/measure/measure_tables.h"
 #include "bpm/app/run_setup.h"
 #include "bpm/app/table_observer.h"
-#include "bpm/io/trajectory.h"
+#include "bpm/io/shared_trajectory.h"
 
 #include <memory>
 #include <vector>
@@ -17,8 +17,8 @@ struct RunWriters {
   std::unique_ptr<TableObserver> table;
   std::vector<std::unique_ptr<FrameObserver>> frames; ///< trajectory, dump, VTK, measures
 
-  /// Closed at the end of a run, where a failure is still told; null when not asked for.
-  std::shared_ptr<TrajectoryWriter> trajectory;
+  /// On all ranks. Closed at the end of a run, where a failure is still told; null when not asked for.
+  std::shared_ptr<SharedTrajectory> trajectory;
   /// The measures of motion, which look back to the frame before; null when not asked for.
   std::shared_ptr<const MeasureTables> motion;
 
@@ -26,8 +26,8 @@ struct RunWriters {
   std::vector<std::int64_t> last_steps() const;
 };
 
-/// The simulation is in the state that the run starts from. Rank 0 alone has files; the others look when it looks, and
-/// measure with it.
+/// The simulation is in the state that the run starts from. All ranks write the trajectory and take measures; all other
+/// files, tables of measures among them, are rank 0's, and the others look when it looks.
 /// \throws std::runtime_error when a file cannot be made or does not belong to the checkpoint.
 RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, const PackingNumbers& numbers);
 

@@ -5,10 +5,9 @@
 #include "bpm/dynamics/stage_driver.h"
 #include "bpm/dynamics/stepper.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <map>
 #include <set>
 #include <sstream>
@@ -204,6 +203,10 @@ int Simulation::stage_index() const {
   return impl_->stage_index;
 }
 
+std::span<const int> Simulation::own_grains() const {
+  return impl_->stepper.layout().grains();
+}
+
 SavedState Simulation::save() const {
   SavedState saved;
   impl_->stepper.save(saved);
@@ -222,8 +225,7 @@ namespace {
 /// Names of the numbers that belong to single nodes; rank 0 alone has them.
 const std::set<std::string> node_names = {"position", "velocity", "force"};
 
-template <class Number>
-void share_small(std::map<std::string, std::vector<Number>>& numbers, const Ranks& ranks) {
+template <class Number> void share_small(std::map<std::string, std::vector<Number>>& numbers, const Ranks& ranks) {
   std::string names;
   for (const auto& [name, values] : numbers) {
     names += node_names.contains(name) ? "" : name + "\n";

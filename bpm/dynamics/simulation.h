@@ -91,7 +91,7 @@ public:
   /// As it was at the start; templates and grains do not change. Only rank 0 keeps ids, positions and velocities.
   const Packing& packing() const;
   const Ranks& ranks() const;
-  const Totals& totals() const;   ///< of the last step an observer asked for
+  const Totals& totals() const; ///< of the last step an observer asked for
   Timings timings() const;
   std::string instruction_set() const; ///< "avx512", "avx2" or "baseline"
 
@@ -99,8 +99,9 @@ public:
     bool velocity = false;
     bool force = false;
     bool positions_on_all_ranks = false; ///< of all nodes, 24 bytes each on every rank; otherwise on rank 0 alone
+    bool own = false; ///< with several ranks: no gathering, each has the nodes of its own grains (Snapshot::grains)
   };
-  /// Velocities, forces and stresses of grains are there on rank 0 alone.
+  /// What is not asked for on all ranks, stresses of grains included, is there on rank 0 alone.
   Snapshot snapshot(Parts parts) const;
   Snapshot snapshot() const { return snapshot(Parts{}); }
   /// Forces on the two ends of a `press` stage, along z (k d): lower, upper.
@@ -108,8 +109,11 @@ public:
   /// Distance between the two ends (walls or clamps) at present, d; 0 when there are none.
   double end_gap() const;
 
-  /// Everything is there on rank 0 alone; the same for any number of ranks.
+  /// The same for any number of ranks: of `position`, `velocity` and `force` each rank has the nodes of its own grains
+  /// (own_grains), everything else is there on rank 0.
   SavedState save() const;
+  /// Grains that this rank owns, ascending; with one rank all.
+  std::span<const int> own_grains() const;
   /// Rank 0's state for all. \throws std::runtime_error when the state does not belong to this packing.
   void restore(const SavedState& state);
   /// Index of the stage that a restored state is in (or that comes next).

@@ -45,9 +45,9 @@ public:
   void volumes_only() { forces_.volumes_only(state_); }
   /// Drift, forces, kick. The cell stands still; see move_cell.
   void advance(Virial virial);
-  /// After a step with a virial: \throws BlowUp when the velocities of some grains turn round at every step. The velocity
-  /// of a full step is the mean of two half steps, so that it then nearly vanishes. Beyond the stable step a vibration
-  /// may stay finite like this for good, because it stretches its bonds: nothing else would show it.
+  /// After a step with a virial: \throws BlowUp when the velocities of some grains turn round at every step. The
+  /// velocity of a full step is the mean of two half steps, so that it then nearly vanishes. Beyond the stable step a
+  /// vibration may stay finite like this for good, because it stretches its bonds: nothing else would show it.
   void check_alternation() const;
   /// Moves the cell at the end of a step, flips it when it leans too far, and advances time and strain.
   void move_cell(const CellRates& rates);
@@ -110,7 +110,7 @@ public:
 
 private:
   PlacementInput placement_input() const;
-  std::vector<std::byte> gathered_nodes() const;
+  std::vector<std::byte> own_nodes() const;
   void scatter_nodes(const std::vector<std::byte>& all);
   /// Values of this rank's nodes become those of all nodes, on rank 0.
   void gather(std::vector<Vector3>& values) const;
@@ -152,7 +152,8 @@ private:
   Matrix3 residual_rate_ = Matrix3::Zero();    ///< the rest, as a rate of the cell matrix
   double evaluated_volume_ = 1.0;              ///< of the cell that the last forces belong to
   double pressure_ = 0.0, kinetic_energy_ = 0.0;
-  Vector3 velocity_sum_ = Vector3::Zero(); ///< of all nodes, that is the momentum over a node's mass, when the run began
+  Vector3 velocity_sum_ =
+      Vector3::Zero(); ///< of all nodes, that is the momentum over a node's mass, when the run began
   double integration_seconds_ = 0.0;
   mutable double reduction_seconds_ = 0.0;
   double worked_until_ = 0.0; ///< seconds of work at the last look at the balance

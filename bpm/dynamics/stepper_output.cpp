@@ -52,15 +52,19 @@ Snapshot Stepper::snapshot(Simulation::Parts parts) const {
     }
     centre /= layout_.n_nodes(g);
   }
-  gather(snapshot.position);
-  if (parts.positions_on_all_ranks) {
-    ranks().broadcast(snapshot.position);
-  }
-  if (parts.velocity) {
-    gather(snapshot.velocity);
-  }
-  if (parts.force) {
-    gather(snapshot.force);
+  if (parts.own && ranks().many()) {
+    snapshot.grains = layout_.grains();
+  } else {
+    gather(snapshot.position);
+    if (parts.positions_on_all_ranks) {
+      ranks().broadcast(snapshot.position);
+    }
+    if (parts.velocity) {
+      gather(snapshot.velocity);
+    }
+    if (parts.force) {
+      gather(snapshot.force);
+    }
   }
   share_grains(snapshot.grain_centre);
   for (int g = 0; g < layout_.n_grains(); ++g) {
@@ -149,9 +153,9 @@ void Stepper::save(SavedState& saved) const {
   save_ends(saved);
 }
 
-// Node by node in the packing's order: the same whatever the lanes and the ranks.
+// Node by node in the packing's order, each rank its own: put together the same whatever the lanes and the ranks.
 void Stepper::save_nodes(SavedState& saved) const {
-  const std::vector<std::byte> nodes = gathered_nodes();
+  const std::vector<std::byte> nodes = own_nodes();
   if (options_.precision == Precision::full) {
     unpack_columns<double, double>(nodes, saved.real["position"], saved.real["velocity"], saved.real["force"]);
     return;

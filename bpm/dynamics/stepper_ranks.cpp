@@ -27,20 +27,15 @@ std::unique_ptr<StarForest> Stepper::forest_from_root() const {
   return make_star_forest(ranks().is_root() ? static_cast<int>(first.back()) : 0, roots);
 }
 
-/// The nodes as they are stored, in the packing's order, on rank 0.
-std::vector<std::byte> Stepper::gathered_nodes() const {
+/// This rank's nodes as they are stored, in the packing's order.
+std::vector<std::byte> Stepper::own_nodes() const {
   const std::size_t size = state_.node_bytes();
   std::vector<std::byte> own;
   for (const int g : layout_.grains()) {
     own.resize(own.size() + size * layout_.n_nodes(g));
     state_.pack(g, own.data() + own.size() - size * layout_.n_nodes(g));
   }
-  if (!ranks().many()) {
-    return own;
-  }
-  std::vector<std::byte> all(ranks().is_root() ? size * packing_.first_nodes().back() : 0);
-  forest_from_root()->collect(size, own.data(), all.data());
-  return all;
+  return own;
 }
 
 void Stepper::scatter_nodes(const std::vector<std::byte>& all) {

@@ -1,46 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/checkpoint.h"
 
+#include "bpm/io/checkpoint_names.h"
 #include "bpm/io/input_error.h"
 #include "bpm/io/output_file.h"
+#include "bpm/io/shared_file.h"
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
-#include <memory>
 #include <optional>
-#include <xxhash.h>
+#include <zlib.h>
 
 namespace boba {
 
 // The file: mark, length of the file, number of entries; each entry: kind, length of its name, count, name, values;
-// at the end the checksum of all bytes before it. Numbers are 64 bits wide, little-endian. It is written as a stream,
-// so that a large packing needs no second copy in memory, and only this source reads it.
+// at the end the checksum of all bytes before it. Numbers are 64 bits wide, little-endian. It is written piece by
+// piece, so that a large packing needs no second copy in memory, and only this source reads it. The checksum is one
+// that can be put together from those of pieces, which ranks have written.
 
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 
-constexpr std::string_view mark = "BOBACKP1";
-constexpr std::string_view stem = "checkpoint-", ending = ".boba";
+constexpr std::string_view mark = "BOBACKP2", any_mark = "BOBACKP";
 enum class Kind : std::uint64_t { text = 1, real = 2, integer = 3 };
 
-/// XXH3 of what has been added so far. Source: xxhash.h, "XXH3 streaming".
-class Checksum {
-public:
-  Checksum() : state_(XXH3_createState()) { XXH3_64bits_reset(state_.get()); }
-  void add(std::string_view bytes) { XXH3_64bits_update(state_.get(), bytes.data(), bytes.size()); }
-  std::uint64_t value() const { return XXH3_64bits_digest(state_.get()); }
-
-private:
-  struct Free {
-    void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
-  };
-  std::unique_ptr<XXH3_state_t, Free> state_;
-};
+std::uint32_t checksum(std::string_view bytes, std::uint32_t before = 0) {
+  return static_cast<std::uint32_t>(crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
 
 template <typename T> std::string_view bytes_of(const T* values, std::size_t n) {
   return {reinterpret_cast<const char*>(values), n * sizeof(T)};
@@ -59,37 +49,121 @@ template <typename Visit> void for_each_entry(const CheckpointData& data, Visit 
   }
 }
 
-void write_entries(OutputFile& out, const CheckpointData& data) {
+/// A piece of the file that somebody has written.
+struct Piece {
+  std::uint64_t at = 0, n = 0; ///< bytes
+  std::uint32_t sum = 0;
+};
+
+/// What one rank writes of a checkpoint.
+class PieceWriter {
+public:
+  explicit PieceWriter(const std::filesystem::path& path) : file_(path) {}
+
+  void write(std::uint64_t at, std::string_view bytes) {
+    if (bytes.empty()) {
+      return;
+    }
+    file_.write(at, bytes.data(), bytes.size());
+    pieces_.push_back({at, bytes.size(), checksum(bytes)});
+  }
+  const std::vector<Piece>& pieces() const { return pieces_; }
+  SharedFile& file() { return file_; }
+
+private:
+  SharedFile file_;
+  std::vector<Piece> pieces_;
+};
+
+/// Everything but the values of nodes. Returns where those begin, in the order of `nodes.names`.
+std::vector<std::uint64_t> write_entries(PieceWriter& out, const CheckpointData& data, const NodeEntries& nodes) {
   constexpr std::size_t portion = 1 << 18;
-  Checksum checksum;
   std::string gathered; // names and lengths are a few bytes each: they go out together
+  std::uint64_t at = 0; // of what is gathered
+  const auto put_now = [&](std::string_view bytes) {
+    out.write(at, bytes);
+    at += bytes.size();
+  };
+  const auto flush = [&] {
+    put_now(gathered);
+    gathered.clear();
+  };
   const auto put = [&](std::string_view bytes) {
-    checksum.add(bytes);
-    gathered += bytes;
-    if (gathered.size() >= portion) {
-      out.write(gathered);
-      gathered.clear();
+    if (bytes.size() >= portion) {
+      flush();
+      put_now(bytes);
+    } else {
+      gathered += bytes;
     }
   };
   const auto put_number = [&](std::uint64_t number) { put(bytes_of(&number, 1)); };
+  const auto place_in_names = [&](const std::string& name) {
+    return std::find(nodes.names.begin(), nodes.names.end(), name) - nodes.names.begin();
+  };
+  const auto is_of_nodes = [&](const std::string& name) { return place_in_names(name) < std::ssize(nodes.names); };
+  const auto length_of = [&](const std::string& name, std::string_view bytes) {
+    return is_of_nodes(name) ? 3 * sizeof(double) * static_cast<std::uint64_t>(nodes.n_nodes) : bytes.size();
+  };
   std::uint64_t length = mark.size() + 3 * sizeof(std::uint64_t), n_entries = 0;
   for_each_entry(data, [&](Kind, const std::string& name, std::string_view bytes) {
-    length += 3 * sizeof(std::uint64_t) + name.size() + bytes.size();
+    length += 3 * sizeof(std::uint64_t) + name.size() + length_of(name, bytes);
     ++n_entries;
   });
   put(mark);
   put_number(length);
   put_number(n_entries);
+  std::vector<std::uint64_t> places(nodes.names.size(), 0);
   for_each_entry(data, [&](Kind kind, const std::string& name, std::string_view bytes) {
     put_number(static_cast<std::uint64_t>(kind));
     put_number(name.size());
-    put_number(bytes.size());
+    put_number(length_of(name, bytes));
     put(name);
-    put(bytes);
+    if (is_of_nodes(name)) {
+      flush();
+      places[place_in_names(name)] = at;
+      at += length_of(name, bytes);
+    } else {
+      put(bytes);
+    }
   });
-  const std::uint64_t sum = checksum.value();
-  gathered += bytes_of(&sum, 1);
-  out.write(gathered);
+  flush();
+  return places;
+}
+
+/// This rank's nodes of each of their entries.
+void write_nodes(PieceWriter& out, const CheckpointData& data, const NodeEntries& nodes,
+                 const std::vector<std::uint64_t>& places) {
+  constexpr std::uint64_t width = 3 * sizeof(double);
+  static_assert(sizeof(double) == sizeof(std::int64_t));
+  for (std::size_t k = 0; k < nodes.names.size(); ++k) {
+    const auto real = data.real.find(nodes.names[k]);
+    const auto integer = data.integer.find(nodes.names[k]);
+    std::string_view values = real != data.real.end()         ? bytes_of(real->second.data(), real->second.size())
+                              : integer != data.integer.end() ? bytes_of(integer->second.data(), integer->second.size())
+                                                              : std::string_view();
+    for (const NodeRun& run : nodes.own) {
+      const std::uint64_t n = run.n * width;
+      if (values.size() < n) {
+        throw std::logic_error("'" + nodes.names[k] + "' does not hold this rank's nodes");
+      }
+      out.write(places[k] + run.first * width, values.substr(0, n));
+      values.remove_prefix(n);
+    }
+  }
+}
+
+/// Puts the checksum behind all pieces, which must be the whole file without a gap.
+void write_checksum(SharedFile& file, std::vector<Piece> pieces) {
+  std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.at < b.at; });
+  std::uint64_t end = 0, sum = 0;
+  for (const Piece& piece : pieces) {
+    if (piece.at != end) {
+      throw std::logic_error(fmt::format("nobody has written the bytes from {} to {}", end, piece.at));
+    }
+    sum = crc32_combine(sum, piece.sum, static_cast<z_off_t>(piece.n));
+    end += piece.n;
+  }
+  file.write(end, &sum, sizeof sum);
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
@@ -139,16 +213,19 @@ std::uint64_t checked_length(const std::filesystem::path& path) {
   std::error_code error;
   const std::uint64_t length = std::filesystem::file_size(path, error);
   std::string head(mark.size() + sizeof(std::uint64_t), '\0');
-  if (error || !in.read(head.data(), static_cast<std::streamsize>(head.size())) || !head.starts_with(mark)) {
+  if (error || !in.read(head.data(), static_cast<std::streamsize>(head.size())) || !head.starts_with(any_mark)) {
     refuse(path, "it does not begin like one");
+  }
+  if (!head.starts_with(mark)) {
+    refuse(path, fmt::format("it was written by another version of Boba, most likely an older one ({}, not {})",
+                             head.substr(0, mark.size()), mark));
   }
   std::uint64_t named_length = 0;
   std::memcpy(&named_length, head.data() + mark.size(), sizeof named_length);
   if (named_length != length) {
     refuse(path, fmt::format("truncated or altered: {} bytes long, {} were written", length, named_length));
   }
-  Checksum checksum;
-  checksum.add(head);
+  std::uint64_t right = checksum(head);
   std::uint64_t left = length - head.size() - sizeof(std::uint64_t);
   std::string chunk(std::min<std::uint64_t>(left, 1 << 20), '\0');
   while (left > 0) {
@@ -156,42 +233,14 @@ std::uint64_t checked_length(const std::filesystem::path& path) {
     if (!in.read(chunk.data(), static_cast<std::streamsize>(n))) {
       refuse(path, "it cannot be read to its end");
     }
-    checksum.add({chunk.data(), n});
+    right = checksum({chunk.data(), n}, static_cast<std::uint32_t>(right));
     left -= n;
   }
   std::uint64_t sum = 0;
-  if (!in.read(reinterpret_cast<char*>(&sum), sizeof sum) || sum != checksum.value()) {
+  if (!in.read(reinterpret_cast<char*>(&sum), sizeof sum) || sum != right) {
     refuse(path, "altered: its checksum does not fit its content");
   }
   return length;
-}
-
-struct NumberedFile {
-  std::uint64_t number = 0;
-  std::filesystem::path path;
-};
-
-std::optional<std::uint64_t> number_in(const std::string& name) {
-  if (!name.starts_with(stem) || !name.ends_with(ending)) {
-    return std::nullopt;
-  }
-  std::uint64_t number = 0;
-  const char* end = name.data() + name.size() - ending.size();
-  const auto [stop, error] = std::from_chars(name.data() + stem.size(), end, number);
-  return error == std::errc() && stop == end ? std::optional(number) : std::nullopt;
-}
-
-/// The checkpoints of a folder, newest first.
-std::vector<NumberedFile> checkpoints_in(const std::filesystem::path& directory) {
-  std::vector<NumberedFile> files;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
-    if (const auto number = number_in(entry.path().filename().string())) {
-      files.push_back({*number, entry.path()});
-    }
-  }
-  std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.number > b.number; });
-  return files;
 }
 
 bool is_whole(const std::filesystem::path& path) {
@@ -206,7 +255,7 @@ bool is_whole(const std::filesystem::path& path) {
 /// Removes what is older than the newest `keep` whole checkpoints; damaged ones do not count as kept.
 void remove_older(const std::filesystem::path& directory, int keep) {
   int n_whole = 0;
-  for (const NumberedFile& file : checkpoints_in(directory)) {
+  for (const NumberedCheckpoint& file : checkpoints_in(directory)) {
     std::error_code ignored; // a file that cannot be removed is no reason to stop a run
     if (n_whole >= keep) {
       std::filesystem::remove(file.path, ignored);
@@ -219,24 +268,64 @@ void remove_older(const std::filesystem::path& directory, int keep) {
 } // namespace
 
 std::filesystem::path write_checkpoint(const std::filesystem::path& directory, const CheckpointData& data, int keep) {
-  const std::vector<NumberedFile> before = checkpoints_in(directory);
+  return write_checkpoint(directory, data, Ranks::alone(), {}, keep);
+}
+
+std::filesystem::path write_checkpoint(const std::filesystem::path& directory, const CheckpointData& data,
+                                       const Ranks& ranks, const NodeEntries& nodes, int keep) {
+  const std::vector<NumberedCheckpoint> before =
+      ranks.is_root() ? checkpoints_in(directory) : std::vector<NumberedCheckpoint>{};
   const std::uint64_t number = before.empty() ? 1 : before.front().number + 1;
-  std::filesystem::path path = directory / fmt::format("{}{:06}{}", stem, number, ending);
-  const std::filesystem::path beside = path.string() + ".part";
-  try {
-    std::filesystem::create_directories(directory);
-    OutputFile out(beside, FileMode::overwrite);
-    write_entries(out, data);
-    out.sync();
-    out.close();
-    std::filesystem::rename(beside, path);
-    sync_folder(directory);
-  } catch (const std::exception& error) {
+  std::filesystem::path path = directory / checkpoint_name(number);
+  std::string beside = path.string() + ".part";
+  const auto on_root = [&](const auto& work) {
+    ranks.together([&] {
+      if (ranks.is_root()) {
+        work();
+      }
+    });
+  };
+  const auto tell = [&](const std::exception& error) {
     std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw std::runtime_error(
-        fmt::format("checkpoint not written: {}{}", error.what(),
-                    before.empty() ? "" : fmt::format("; the last one remains: {}", before.front().path.string())));
+    if (ranks.is_root()) {
+      std::filesystem::remove(beside, ignored);
+    }
+    return fmt::format("checkpoint not written: {}{}", error.what(),
+                       before.empty() ? "" : fmt::format("; the last one remains: {}", before.front().path.string()));
+  };
+  try {
+    on_root([&] {
+      std::filesystem::create_directories(directory);
+      OutputFile(beside, FileMode::overwrite).close();
+    });
+    ranks.broadcast(beside);
+    std::optional<PieceWriter> out;
+    std::vector<std::uint64_t> places;
+    ranks.together([&] { out.emplace(beside); });
+    on_root([&] { places = write_entries(*out, data, nodes); });
+    ranks.broadcast(places);
+    ranks.together([&] {
+      write_nodes(*out, data, nodes, places);
+      if (!ranks.is_root()) {
+        out->file().sync();
+        out->file().close();
+      }
+    });
+    const std::vector<Piece> pieces = ranks.gathered(out->pieces());
+    on_root([&] {
+      write_checksum(out->file(), pieces);
+      out->file().sync();
+      out->file().close();
+      std::filesystem::rename(beside, path);
+      sync_folder(directory);
+    });
+  } catch (const RankError& error) {
+    throw RankError(error.rank, error.is_wrong_input, tell(error));
+  } catch (const std::exception& error) {
+    throw std::runtime_error(tell(error));
+  }
+  if (!ranks.is_root()) {
+    return {};
   }
   remove_older(directory, std::max(keep, 1));
   return path;
@@ -272,7 +361,7 @@ CheckpointData read_checkpoint(const std::filesystem::path& path) {
 
 LatestCheckpoint latest_checkpoint(const std::filesystem::path& directory) {
   LatestCheckpoint latest;
-  for (const NumberedFile& file : checkpoints_in(directory)) {
+  for (const NumberedCheckpoint& file : checkpoints_in(directory)) {
     try {
       latest.data = read_checkpoint(file.path);
       latest.path = file.path;
@@ -283,7 +372,7 @@ LatestCheckpoint latest_checkpoint(const std::filesystem::path& directory) {
   }
   throw InputError(
       latest.refused.empty()
-          ? fmt::format("{}: there is no checkpoint ({}NNNNNN{})", directory.string(), stem, ending)
+          ? fmt::format("{}: there is no checkpoint (checkpoint-NNNNNN.boba)", directory.string())
           : fmt::format("{}: no checkpoint can be used; {}", directory.string(), fmt::join(latest.refused, "; ")));
 }
 

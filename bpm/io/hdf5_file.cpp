@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/hdf5_file.h"
 
+#include "bpm/io/hdf5_room.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -31,8 +33,11 @@ std::string reason() {
   return text;
 }
 
-Handle access_properties() {
+Handle access_properties(bool with_rooms) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS));
+  if (with_rooms) {
+    use_room_driver(access);
+  }
   // Others may read the file while the run goes on.
   H5Pset_file_locking(access, false, true);
   // Metadata stays in memory until flush(): a process killed between two flushes leaves the file of the last one.
@@ -82,8 +87,8 @@ hid_t File::check(hid_t result, const std::string& doing) const {
 }
 
 void File::let_go() const {
-  // HDF5 cannot close a file that it could not write: it crashes, at the latest when the program ends. So from here on it
-  // writes into memory instead, which succeeds; the file on the disk stays as it was last flushed.
+  // HDF5 cannot close a file that it could not write: it crashes, at the latest when the program ends. So from here on
+  // it writes into memory instead, which succeeds; the file on the disk stays as it was last flushed.
   int* descriptor = nullptr;
   if (H5Fget_vfd_handle(id_, H5P_DEFAULT, reinterpret_cast<void**>(&descriptor)) < 0) {
     return;
@@ -96,7 +101,7 @@ void File::let_go() const {
   }
 }
 
-File File::create(const std::filesystem::path& path) {
+File File::create(const std::filesystem::path& path, bool with_rooms) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // failures are thrown, not printed
   File file;
   file.path_ = path;
@@ -104,17 +109,17 @@ File File::create(const std::filesystem::path& path) {
   const Handle creation(H5Pcreate(H5P_FILE_CREATE));
   // Wide nodes in the index of chunks: it is split, which touches several places, only once in 1024 frames.
   H5Pset_istore_k(creation, 512);
-  const Handle access = access_properties();
+  const Handle access = access_properties(with_rooms);
   file.id_ = Handle(file.check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), "creating the file"));
   return file;
 }
 
-File File::open(const std::filesystem::path& path, bool writable) {
+File File::open(const std::filesystem::path& path, bool writable, bool with_rooms) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // failures are thrown, not printed
   File file;
   file.path_ = path;
   file.writable_ = writable;
-  const Handle access = access_properties();
+  const Handle access = access_properties(with_rooms);
   file.id_ = Handle(
       file.check(H5Fopen(path.c_str(), writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access), "opening the HDF5 file"));
   return file;
@@ -307,7 +312,8 @@ void File::write_frame_raw(const std::string& name, hsize_t frame, const void* v
   start[0] = frame;
   count[0] = 1;
   H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
-  const Handle memory = simple_space({n});
+  // Of the frame's own shape: otherwise HDF5 goes through its chunk number by number.
+  const Handle memory = simple_space(count);
   check(H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, values), "writing " + name);
   close_dataset(dataset, name);
 }
@@ -320,7 +326,7 @@ void File::read_frame_raw(const std::string& name, hsize_t frame, void* values, 
   count[0] = 1;
   check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
         "selecting in " + name);
-  const Handle memory = simple_space({product(count)});
+  const Handle memory = simple_space(count);
   check(H5Dread(dataset, type, memory, space, H5P_DEFAULT, values), "reading " + name);
 }
 

@@ -53,9 +53,9 @@ template <> inline hid_t type_of<std::int32_t>() {
 class File {
 public:
   File() = default;
-  /// Replaces what is there.
-  static File create(const std::filesystem::path& path);
-  static File open(const std::filesystem::path& path, bool writable);
+  /// Replaces what is there. `with_rooms`: make_room will be called.
+  static File create(const std::filesystem::path& path, bool with_rooms = false);
+  static File open(const std::filesystem::path& path, bool writable, bool with_rooms = false);
 
   void make_group(const std::string& name) const;
   bool has(const std::string& name) const;
@@ -104,6 +104,11 @@ public:
   template <typename T> void write_frame(const std::string& name, hsize_t frame, std::span<const T> values) const {
     write_frame_raw(name, frame, values.data(), type_of<T>(), values.size());
   }
+  /// The frame as if it had been written, but its values are left to others: returns where in the file they belong,
+  /// bytes from its begin. Of a dataset of T with one frame a chunk and no compression.
+  template <typename T> std::uint64_t make_room(const std::string& name, hsize_t frame) const {
+    return make_room_raw(name, frame, type_of<T>());
+  }
   int compression(const std::string& name) const;
   void set_frames(const std::string& name, hsize_t n_frames) const;
   /// A second name for the same dataset.
@@ -116,6 +121,8 @@ public:
   /// Hands all to the operating system so that the file can be read even if the process is killed right afterwards.
   void flush() const;
   void close();
+  /// Takes the file away from HDF5: what is written from now on is lost, and the file stays as it was last flushed.
+  void let_go() const;
   bool is_open() const { return id_ >= 0; }
   const std::filesystem::path& path() const { return path_; }
 
@@ -129,12 +136,11 @@ private:
   hsize_t frame_size(const std::string& name) const;
   void make_growing_raw(const std::string& name, const Growing& layout, hid_t type, const void* fill) const;
   void write_frame_raw(const std::string& name, hsize_t frame, const void* values, hid_t type, hsize_t n) const;
+  std::uint64_t make_room_raw(const std::string& name, hsize_t frame, hid_t type) const;
   void read_frame_raw(const std::string& name, hsize_t frame, void* values, hid_t type) const;
   void put_attribute(const std::string& object, const std::string& name, hid_t type, hid_t space,
                      const void* values) const;
 
-  /// Takes the file away from HDF5 after a failure.
-  void let_go() const;
   /// Closes a dataset: what its cache still holds is written now, and a failure must not pass unseen.
   void close_dataset(Handle& dataset, const std::string& name) const;
 

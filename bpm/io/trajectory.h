@@ -22,8 +22,9 @@ struct TrajectoryOrigin {
 };
 
 struct TrajectoryOptions {
-  bool velocity = false; ///< store velocities; every snapshot then needs them
-  int compression = 0;   ///< 0 (none, fastest) .. 9 of the node data
+  bool velocity = false;        ///< store velocities; every snapshot then needs them
+  int compression = 0;          ///< 0 (none, fastest) .. 9 of the node data
+  bool nodes_by_others = false; ///< nodes of frames are put into the file by several ranks, see make_room
 };
 
 /// Writes an H5MD 1.1 file frame by frame: positions and images, box, each grain's centre and stress, strain, and once
@@ -40,7 +41,8 @@ public:
   /// Goes on with a file after its last frame up to `last_step`; later frames and a torn one are removed.
   /// A file that was not closed (its run was killed) is copied frame by frame, which takes its size in disk space once
   /// more. \throws std::runtime_error when the file is missing, damaged, or of another packing.
-  static TrajectoryWriter go_on(const std::filesystem::path& path, const Topology& topology, std::int64_t last_step);
+  static TrajectoryWriter go_on(const std::filesystem::path& path, const Topology& topology, std::int64_t last_step,
+                                bool nodes_by_others = false);
 
   TrajectoryWriter(TrajectoryWriter&&) noexcept;
   TrajectoryWriter& operator=(TrajectoryWriter&&) noexcept;
@@ -50,6 +52,22 @@ public:
   /// fails.
   void write(const Snapshot& snapshot);
   std::int64_t n_frames() const;
+
+  /// Where a frame's values of nodes lie in the file, bytes: node after node, three numbers each (doubles; images are
+  /// 32-bit integers).
+  struct NodePlaces {
+    std::uint64_t position = 0, image = 0, velocity = 0; ///< 0 for velocities that are not stored
+  };
+  /// write() in two halves, for nodes that others put there in between; only of a file made or opened with
+  /// `nodes_by_others` and not compressed, and only of a frame that is new. The snapshot's nodes are not looked at.
+  NodePlaces make_room(const Snapshot& snapshot);
+  void finish(const Snapshot& snapshot);
+  /// False for the step that was written last. \throws std::invalid_argument when it goes back in time.
+  bool is_new(const Snapshot& snapshot) const;
+  bool is_compressed() const;
+  /// From now on nothing reaches the file any more: it stays as it was last flushed.
+  void give_up();
+
   void close();
 
 private:

@@ -24,6 +24,16 @@ inline constexpr const char* grain_stress = "/observables/grain_stress";
 inline constexpr const char* streaming_rate = "/observables/streaming_rate";
 inline constexpr const char* grains = "/parameters/grains";
 
+inline std::string value_of(const char* element) {
+  return std::string(element) + "/value";
+}
+inline std::string step_name() {
+  return std::string(position) + "/step";
+}
+inline std::string time_name() {
+  return std::string(position) + "/time";
+}
+
 /// 1 once the writer has closed the file, 0 while it writes and after a kill.
 inline constexpr const char* closed = "/parameters/closed";
 

@@ -37,15 +37,17 @@ struct Topology {
 /// The state of a packing at one step, in plain arrays indexed by global node number: what every writer and every
 /// measure reads. Positions are unwrapped; the image flags of a file are `box.image_of(x)`.
 struct Snapshot {
+  /// The grains whose nodes the arrays of nodes hold, one after the other; empty where that is all of them.
+  std::vector<int> grains;
   std::int64_t step = 0;
   double time = 0.0;   ///< tau
   double strain = 0.0; ///< accumulated shear strain
   /// Shear rate that images move with while positions do not follow (remap = "velocities"), 1/tau; else 0.
   double streaming_rate = 0.0;
   Box box;
-  std::vector<Vector3> position; ///< d
-  std::vector<Vector3> velocity; ///< d/tau, full step; empty when not asked for
-  std::vector<Vector3> force;    ///< k d; empty when not asked for
+  std::vector<Vector3> position;     ///< d
+  std::vector<Vector3> velocity;     ///< d/tau, full step; empty when not asked for
+  std::vector<Vector3> force;        ///< k d; empty when not asked for
   std::vector<Vector3> grain_centre; ///< d, unwrapped mean of the grain's nodes
   /// Each grain's own part of the stress, times the box volume (so the sum over grains / volume is the stress); k d,
   /// components xx yy zz xy xz yz, tension positive, kinetic part included.

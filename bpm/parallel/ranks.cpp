@@ -1,12 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/parallel/ranks.h"
 
-#include <mpi.h>
-
 #include <algorithm>
 #include <limits>
+#include <mpi.h>
+#include <numeric>
 
 namespace boba {
+
+namespace {
+
+/// How many items each rank has and where its first one goes. MPI counts with an int.
+struct Parts {
+  explicit Parts(std::span<const std::int64_t> counts) {
+    std::int64_t total = 0;
+    for (const std::int64_t count : counts) {
+      if (count > std::numeric_limits<int>::max() - total) {
+        throw std::length_error("more than 2^31 values to be shared between the ranks");
+      }
+      n.push_back(static_cast<int>(count));
+      starts.push_back(static_cast<int>(total));
+      total += count;
+    }
+  }
+  std::vector<int> n, starts;
+};
+
+/// So many bytes as one item.
+struct ItemType {
+  explicit ItemType(std::size_t bytes) {
+    MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &type);
+    MPI_Type_commit(&type);
+  }
+  ItemType(const ItemType&) = delete;
+  ItemType& operator=(const ItemType&) = delete;
+  ~ItemType() { MPI_Type_free(&type); }
+  MPI_Datatype type = MPI_DATATYPE_NULL;
+};
+
+} // namespace
 
 const Ranks& Ranks::alone() {
   static const Ranks one(0, 1);
@@ -47,23 +79,22 @@ void Ranks::any(std::span<char> flags) const {
   }
 }
 
+std::vector<std::int64_t> Ranks::counts_of_ranks(std::int64_t own) const {
+  std::vector<std::int64_t> counts(size_);
+  MPI_Allgather(&own, 1, MPI_INT64_T, counts.data(), 1, MPI_INT64_T, MPI_COMM_WORLD);
+  return counts;
+}
+
+void Ranks::gather(const void* own, void* all, std::span<const std::int64_t> counts, std::size_t item_bytes) const {
+  const Parts parts(counts);
+  const ItemType item(item_bytes);
+  MPI_Gatherv(own, parts.n[rank_], item.type, all, parts.n.data(), parts.starts.data(), item.type, 0, MPI_COMM_WORLD);
+}
+
 void Ranks::gather_all(const void* own, void* all, std::span<const std::int64_t> counts, std::size_t item_bytes) const {
-  constexpr std::int64_t most = std::numeric_limits<int>::max(); // MPI counts with an int
-  std::vector<int> n(size_), starts(size_);
-  std::int64_t total = 0;
-  for (int r = 0; r < size_; ++r) {
-    if (counts[r] > most - total) {
-      throw std::length_error("more than 2^31 values to be shared between the ranks");
-    }
-    n[r] = static_cast<int>(counts[r]);
-    starts[r] = static_cast<int>(total);
-    total += counts[r];
-  }
-  MPI_Datatype item = MPI_DATATYPE_NULL;
-  MPI_Type_contiguous(static_cast<int>(item_bytes), MPI_BYTE, &item);
-  MPI_Type_commit(&item);
-  MPI_Allgatherv(own, n[rank_], item, all, n.data(), starts.data(), item, MPI_COMM_WORLD);
-  MPI_Type_free(&item);
+  const Parts parts(counts);
+  const ItemType item(item_bytes);
+  MPI_Allgatherv(own, parts.n[rank_], item.type, all, parts.n.data(), parts.starts.data(), item.type, MPI_COMM_WORLD);
 }
 
 void Ranks::share_rows(std::span<double> table, int width, const Ownership& ownership) const {

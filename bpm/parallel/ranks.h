@@ -4,6 +4,7 @@
 #include "bpm/parallel/ownership.h"
 
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -63,6 +64,17 @@ public:
     }
   }
 
+  /// The values of all ranks on rank 0, one rank's after the other; elsewhere nothing. \throws as gather_all
+  template <class T> std::vector<T> gathered(const std::vector<T>& own) const {
+    if (!many()) {
+      return own;
+    }
+    const std::vector<std::int64_t> counts = counts_of_ranks(std::ssize(own));
+    std::vector<T> all(is_root() ? std::accumulate(counts.begin(), counts.end(), std::int64_t{0}) : 0);
+    gather(own.data(), all.data(), counts, sizeof(T));
+    return all;
+  }
+
   /// A table of one row a grain, whose owners have filled in theirs: afterwards all ranks have all rows.
   void share_rows(std::span<double> table, int width, const Ownership& ownership) const;
 
@@ -96,6 +108,9 @@ private:
   };
   Ranks(int rank, int size) : rank_(rank), size_(size) {}
   void agree(const Failure& failure) const;
+  std::vector<std::int64_t> counts_of_ranks(std::int64_t own) const;
+  /// As gather_all, on rank 0 alone.
+  void gather(const void* own, void* all, std::span<const std::int64_t> counts, std::size_t item_bytes) const;
 
   int rank_ = 0, size_ = 1;
 };

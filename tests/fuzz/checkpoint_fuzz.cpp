@@ -8,15 +8,15 @@
 
 #include <cstring>
 #include <vector>
-#include <xxhash.h>
+#include <zlib.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::vector<std::uint8_t> bytes(data, data + size);
   if (size >= 32 && data[size - 1] % 2 == 0) {
     const std::uint64_t length = size;
-    std::memcpy(bytes.data(), "BOBACKP1", 8);
+    std::memcpy(bytes.data(), "BOBACKP2", 8);
     std::memcpy(bytes.data() + 8, &length, 8);
-    const std::uint64_t sum = XXH3_64bits(bytes.data(), size - 8);
+    const std::uint64_t sum = crc32_z(0, bytes.data(), size - 8);
     std::memcpy(bytes.data() + size - 8, &sum, 8);
   }
   try {

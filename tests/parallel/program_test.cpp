@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program under mpirun: the same scene, the same files, to the last bit; stopped on some ranks and gone on with on others.
+// The program under mpirun: the same scene, the same files, to the last bit; stopped on some ranks and gone on with on
+// others.
 #include "tests/parallel/mpirun.h"
 #include "tests/robustness/app/same_run.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+#include <gtest/gtest.h>
 
 namespace boba::test {
 namespace {
@@ -17,9 +17,10 @@ ProgramResult boba_on(int ranks, const TemporaryFolder& folder, const std::vecto
 }
 
 std::vector<std::string> run_into(const std::string& output, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments{"run", "scene.toml", "--output", output, "--set", "species.0.count=12", "--set",
-                                     "stage.2.rate=2e-3", "--set", "stage.2.strain=0.1", "--set",
-                                     "measure=[{what = \"motion, order\", every_strain = 0.05}]"};
+  std::vector<std::string> arguments{
+      "run",   "scene.toml",         "--output", output,
+      "--set", "species.0.count=12", "--set",    "stage.2.rate=2e-3",
+      "--set", "stage.2.strain=0.1", "--set",    "measure=[{what = \"motion, order\", every_strain = 0.05}]"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -43,6 +44,10 @@ TEST(ProgramOnRanks, WritesTheSameFiles) {
     EXPECT_EQ(count_of(result.out, "done at step"), 1) << result.out;
     EXPECT_NE(result.out.find(out + " ranks of "), std::string::npos) << result.out;
     expect_same_run(folder / "alone", folder / out);
+    const auto checkpoint = [&](const std::string& run) {
+      return content_of(latest_checkpoint(folder / run / "checkpoints").path);
+    };
+    EXPECT_TRUE(checkpoint("alone") == checkpoint(out)) << "the last checkpoints differ";
     for (const auto& entry : std::filesystem::directory_iterator(folder / "alone" / "measures")) {
       EXPECT_TRUE(content_of(entry.path()) == content_of(folder / out / "measures" / entry.path().filename()))
           << entry.path();
@@ -84,7 +89,7 @@ TEST(ProgramOnRanks, TellsWrongInputOnce) {
   EXPECT_EQ(count_of(unknown.err, "--no-such-option"), 1) << unknown.err;
 }
 
-/// One rank is killed: the others end too, and the run can be gone on with.
+/// One rank is killed: the others end too, and the run can be gone on with, on fewer ranks or alone.
 TEST(ProgramOnRanks, SurvivesAKilledRank) {
   const TemporaryFolder folder;
   folder.file("scene.toml", small_scene);
@@ -100,12 +105,16 @@ TEST(ProgramOnRanks, SurvivesAKilledRank) {
       "exec \"$@\"",
       "sh"};
   command.insert(command.end(), arguments.begin(), arguments.end());
-  const ProgramResult killed = run_on_ranks(3, (folder / "").string(), command);
+  const ProgramResult killed = run_on_ranks(4, (folder / "").string(), command);
   ASSERT_NE(killed.exit_code, 0);
   EXPECT_EQ(killed.out.find("done at step"), std::string::npos);
-  const ProgramResult result = boba_on(2, folder, {"resume", "out"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  expect_same_run(folder / "alone", folder / "out");
+  for (const int ranks : {1, 3}) {
+    const std::string copy = "out-" + std::to_string(ranks);
+    std::filesystem::copy(folder / "out", folder / copy, std::filesystem::copy_options::recursive);
+    const ProgramResult result = boba_on(ranks, folder, {"resume", copy});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    expect_same_run(folder / "alone", folder / copy);
+  }
 }
 
 } // namespace

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Loaded before the C library (LD_PRELOAD): makes one of the calls that change files fail as on a full disk.
-// BOBA_FAIL_AT: number of the call, from 1. BOBA_FAIL_ON: every later one fails too. BOBA_FAIL_COUNT: file that gets the
-// number of calls at the end. Standard output and error are left alone.
+// BOBA_FAIL_AT: number of the call, from 1. BOBA_FAIL_ON: every later one fails too. BOBA_FAIL_COUNT: file that gets
+// the number of calls at the end. BOBA_FAIL_NAME: only files with this in their path count. Standard output and error
+// are left alone.
 #include <atomic>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -33,10 +35,20 @@ bool fails() {
   return now;
 }
 
+bool is_meant(const char* path) {
+  const char* part = std::getenv("BOBA_FAIL_NAME");
+  return part == nullptr || std::strstr(path, part) != nullptr;
+}
+
 /// False for standard output and error, and for what has no name in any folder (memory).
 bool is_on_disk(int descriptor) {
   struct stat status = {};
-  return descriptor > 2 && fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink > 0;
+  if (descriptor <= 2 || fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink == 0) {
+    return false;
+  }
+  char link[64], path[4096] = {};
+  std::snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
+  return readlink(link, path, sizeof path - 1) > 0 && is_meant(path);
 }
 
 template <typename Function> Function* next(const char* name) {
@@ -95,6 +107,6 @@ int fallocate(int descriptor, int mode, off_t at, off_t length) {
 
 int rename(const char* from, const char* to) noexcept {
   static auto* const real = next<int(const char*, const char*)>("rename");
-  return fails() ? -1 : real(from, to);
+  return is_meant(to) && fails() ? -1 : real(from, to);
 }
 }

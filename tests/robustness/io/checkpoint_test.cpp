@@ -55,6 +55,24 @@ TEST(Checkpoint, ReadsBackEveryBit) {
   }
 }
 
+TEST(Checkpoint, IsTheSameFileWhenWrittenInPieces) {
+  const TemporaryFolder folder;
+  CheckpointData data = sample(1);
+  for (int k = 0; k < 15; ++k) { // five nodes
+    data.real["velocity"].push_back(0.1 * k);
+    data.integer["place"].push_back(-k);
+  }
+  const std::string whole = content_of(write_checkpoint(folder / "whole", data));
+  const NodeEntries nodes = {{"place", "velocity"}, {{0, 1}, {1, 3}, {4, 1}}, 5};
+  EXPECT_TRUE(content_of(write_checkpoint(folder / "pieces", data, Ranks::alone(), nodes)) == whole);
+  // Nobody has the last node.
+  const NodeEntries lacking = {{"place", "velocity"}, {{0, 1}, {1, 3}}, 5};
+  EXPECT_NE(message_of<std::runtime_error>([&] {
+              write_checkpoint(folder / "pieces", data, Ranks::alone(), lacking);
+            }).find("nobody has written"),
+            std::string::npos);
+}
+
 TEST(Checkpoint, KeepsTheLastTwo) {
   const TemporaryFolder folder;
   for (const int step : {1, 2, 3, 4}) {
@@ -93,6 +111,16 @@ TEST(Checkpoint, RefusesAFlippedBitInAnyByte) {
     ASSERT_THROW(read_checkpoint(path), InputError) << "byte " << byte << " bit " << bit;
   }
   EXPECT_NO_THROW(read_checkpoint(folder.file("same.boba", whole)));
+}
+
+TEST(Checkpoint, RefusesThatOfAnOlderVersion) {
+  const TemporaryFolder folder;
+  std::string bytes = content_of(write_checkpoint(folder / "", sample(1)));
+  bytes.replace(0, 8, "BOBACKP1");
+  const auto path = folder.file("old.boba", bytes);
+  const std::string message = message_of<InputError>([&] { read_checkpoint(path); });
+  EXPECT_NE(message.find("older"), std::string::npos) << message;
+  EXPECT_NE(message.find("BOBACKP1"), std::string::npos) << message;
 }
 
 TEST(Checkpoint, OffersTheOlderOneAndKeepsIt) {
