@@ -28,10 +28,13 @@ double lammps_force(double alpha, double height) {
   std::string header;
   std::getline(table, header);
   double above = INFINITY, force_above = 0.0, below = 0.0, force_below = 0.0;
-  for (char comma; table >> below >> comma >> force_below; above = below, force_above = force_below) {
+  char comma = 0;
+  while (table >> below >> comma >> force_below) {
     if (below <= height && height < above) {
       return force_below + (force_above - force_below) * (height - below) / (above - below);
     }
+    above = below;
+    force_above = force_below;
   }
   throw std::out_of_range(fmt::format("no force at a height of {} d for alpha = {}", height, alpha));
 }

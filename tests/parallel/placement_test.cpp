@@ -38,7 +38,8 @@ TEST(HilbertCurve, VisitsEveryCellStepByStep) {
 PlacementInput cubic(const Packing& packing, int side, int n_ranks, int lanes) {
   PlacementInput input = {&packing, n_ranks, lanes, {}, {}};
   for (int g = 0; g < packing.n_grains(); ++g) {
-    input.fractional.emplace_back((g % side + 0.5) / side, (g / side % side + 0.5) / side, (g / side / side + 0.5) / side);
+    const Eigen::Vector3i cell(g % side, g / side % side, g / side / side);
+    input.fractional.emplace_back((cell.cast<double>() + Vector3::Constant(0.5)) / side);
     input.cost.push_back(1.0);
   }
   return input;

@@ -18,7 +18,8 @@ Packing cubic_lattice(int n, double spacing) {
   auto sphere = std::make_shared<const GrainTemplate>(build_template({.n_nodes = 1}));
   std::vector<Placement> placements;
   for (int i = 0; i < n * n * n; ++i) {
-    placements.push_back({.centre = spacing * Vector3(i % n + 0.5, i / n % n + 0.5, i / (n * n) + 0.5)});
+    const Eigen::Vector3i cell(i % n, i / n % n, i / (n * n));
+    placements.push_back({.centre = spacing * (cell.cast<double>() + Vector3::Constant(0.5))});
   }
   const Box box(Vector3::Zero(), Vector3::Constant(n * spacing), {spacing, -spacing, 0.0});
   return make_packing(box, {sphere}, placements);
