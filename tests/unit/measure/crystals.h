@@ -20,7 +20,7 @@ inline Crystal repeat(const Vector3& cell, const std::vector<Vector3>& basis, in
   Crystal crystal{Box(Vector3(0.3, -1.0, 2.0), cell.cwiseProduct(Vector3(n1, n2, n3))), {}};
   for (int i = 0; i < n1 * n2 * n3; ++i) {
     for (const Vector3& s : basis) {
-      const Vector3 at = s + Vector3(i % n1, i / n1 % n2, i / (n1 * n2));
+      const Vector3 at = s + Eigen::Vector3i(i % n1, i / n1 % n2, i / (n1 * n2)).cast<double>();
       crystal.centres.push_back(crystal.box.origin() + at.cwiseProduct(cell) + Vector3::Constant(1e-3));
     }
   }
@@ -47,7 +47,7 @@ inline Crystal tilted_fcc(int n) {
           .finished();
   Crystal crystal{Box(Vector3::Zero(), n * h.diagonal(), {n * h(0, 1), n * h(0, 2), n * h(1, 2)}), {}};
   for (int i = 0; i < n * n * n; ++i) {
-    crystal.centres.emplace_back(h * Vector3(i % n, i / n % n, i / (n * n)));
+    crystal.centres.emplace_back(h * Eigen::Vector3i(i % n, i / n % n, i / (n * n)).cast<double>());
   }
   return crystal;
 }
