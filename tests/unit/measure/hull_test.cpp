@@ -195,7 +195,7 @@ TEST(Hull, QhullAgreesOnDeformedGrains) {
 TEST(Hull, CoplanarNodesOnTheFacesAreNoTrouble) {
   std::vector<Vector3> grid;
   for (int i = 0; i < 9 * 9 * 9; ++i) {
-    grid.push_back(0.1 * Vector3(i % 9, (i / 9) % 9, i / 81));
+    grid.push_back(0.1 * Eigen::Vector3i(i % 9, (i / 9) % 9, i / 81).cast<double>());
   }
   const ConvexHull hull = convex_hull(grid);
   const HullShape shape = hull_shape(hull);
@@ -241,7 +241,8 @@ TEST(Hull, DegenerateInputIsNamed) {
   std::vector<Vector3> line, plane;
   for (int i = 0; i < 400; ++i) {
     line.push_back(static_cast<double>(i) * Vector3(1.0, 2.0, 4.0));
-    plane.push_back(Vector3(i % 20, i / 20, 0.7));
+    const int row = i / 20;
+    plane.push_back(Vector3(i % 20, row, 0.7));
   }
   EXPECT_NE(message_of(line).find("on one line"), std::string::npos);
   EXPECT_NE(message_of(plane).find("in one plane"), std::string::npos);

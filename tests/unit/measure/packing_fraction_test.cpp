@@ -42,7 +42,7 @@ TEST(PointGrid, FindsEveryImageOnce) {
     grid.visit_near(x, radius, [&](std::int64_t p, const Vector3& image) { found[p] += (image - x).norm() < radius; });
     for (std::size_t p = 0; p < points.size(); ++p) {
       for (int k = 0; k < 21 * 21 * 21; ++k) {
-        const Vector3 shift = box.h() * Vector3(k % 21 - 10, k / 21 % 21 - 10, k / 441 - 10);
+        const Vector3 shift = box.h() * Eigen::Vector3i(k % 21 - 10, k / 21 % 21 - 10, k / 441 - 10).cast<double>();
         expected[p] += (points[p] + shift - x).norm() < radius;
       }
     }

@@ -204,7 +204,8 @@ TEST(Scattering, FilledBallHasTheFormFactorOfABall) {
   // First zero: the minimum of the measured curve, in some direction.
   const Vector3 direction = Vector3(1.0, 2.0, -0.4).normalized();
   double lowest = 1.0, lowest_q = 0.0;
-  for (double q = 0.40; q < 0.50; q += 0.001) {
+  for (int k = 0; k < 100; ++k) {
+    const double q = 0.40 + 0.001 * k;
     const double value = direct_intensity(nodes, q * direction) / n;
     if (value < lowest) {
       lowest = value;

@@ -16,7 +16,7 @@ double smallest_gap(const std::vector<Vector3>& x, const std::vector<double>& ra
     for (std::size_t j = 0; j < x.size(); ++j) {
       for (int image = 0; image < 27; ++image) {
         if (i != j || image != 13) {
-          const Vector3 shift(image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1);
+          const Vector3 shift = Eigen::Vector3i(image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1).cast<double>();
           gap = std::min(gap, (x[i] - x[j] + edge * shift).norm() - radii[i] - radii[j]);
         }
       }
