@@ -38,7 +38,8 @@ struct LatticePacking {
       const auto u = random_point(1, g);
       const Eigen::Quaterniond turn = Eigen::Quaterniond(u[0] - 0.5, u[1] - 0.5, u[2] - 0.5, 0.3).normalized();
       const Vector3 at =
-          box.to_position(Vector3((g % n1 + 0.5) / n1, (g / n1 % n2 + 0.5) / n2, (g / (n1 * n2) + 0.5) / n3));
+          box.to_position((Eigen::Vector3i(g % n1, g / n1 % n2, g / (n1 * n2)).cast<double>() + Vector3::Constant(0.5))
+                              .cwiseQuotient(Vector3(n1, n2, n3)));
       for (const Vector3& x : grain) {
         nodes.push_back(at + turn * (x - centre));
       }
@@ -94,7 +95,8 @@ std::vector<Vector3> cut_grain() {
     const int site = i % 4, cell = i / 4;
     const Vector3 basis(site == 1 || site == 2 ? 0.5 : 0.0, site == 1 || site == 3 ? 0.5 : 0.0, site >= 2 ? 0.5 : 0.0);
     const auto u = random_point(2, i);
-    const Vector3 x = edge * (Vector3(cell % 24 - 12.1, cell / 24 % 24 - 12.2, cell / 576 - 12.3) + basis) +
+    const Vector3 x = edge * (Eigen::Vector3i(cell % 24, cell / 24 % 24, cell / 576).cast<double>() -
+                              Vector3(12.1, 12.2, 12.3) + basis) +
                       0.4 * Vector3(u[0] - 0.5, u[1] - 0.5, u[2] - 0.5);
     if (x.norm() < 10.0) {
       nodes.push_back(x);

@@ -28,7 +28,7 @@ std::shared_ptr<const GrainTemplate> lattice(int n_nodes) {
   const int edge = static_cast<int>(std::ceil(std::cbrt(n_nodes)));
   Vector3 mean = Vector3::Zero();
   for (int i = 0; i < n_nodes; ++i) {
-    grain.position.push_back(1.2 * Vector3(i % edge, i / edge % edge, i / edge / edge));
+    grain.position.push_back(1.2 * Eigen::Vector3i(i % edge, i / edge % edge, i / edge / edge).cast<double>());
     mean += grain.position.back() / n_nodes;
   }
   for (Vector3& x : grain.position) {
@@ -43,7 +43,8 @@ Packing grid(const Arguments& a) {
   const double apart = 1.2 * std::ceil(std::cbrt(a.nodes)) + 3.0;
   std::vector<Placement> placements;
   for (int g = 0; g < a.side * a.side * a.side; ++g) {
-    placements.push_back({{}, apart * Vector3(g % a.side + 0.5, g / a.side % a.side + 0.5, g / a.side / a.side + 0.5)});
+    const Eigen::Vector3i cell(g % a.side, g / a.side % a.side, g / a.side / a.side);
+    placements.push_back({{}, apart * (cell.cast<double>() + Vector3::Constant(0.5))});
   }
   const Box box(Vector3::Zero(), Vector3::Constant(apart * a.side), Vector3::Zero(), {true, true, true});
   return make_packing(box, {grain}, placements);
