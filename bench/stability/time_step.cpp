@@ -35,7 +35,8 @@ double growth_a_step(Packing packing, const Material& material, double dt, int n
   } catch (const BlowUp&) {
     return INFINITY;
   }
-  return std::pow(stepper.kinetic_energy() / middle, 0.5 / (n_steps - n_steps / 2));
+  const auto last_half = n_steps - n_steps / 2;
+  return std::pow(stepper.kinetic_energy() / middle, 0.5 / last_half);
 }
 
 /// Bisects for the step at which velocities begin to grow by `limit` a step, to 0.2 %.
@@ -156,7 +157,8 @@ void pressed(OutputFile& file, double alpha, double pressure) {
 /// Two nodes at an overlap, held there: the closed form, and with one of them bonded in a grain the bound by the sum.
 void pairs(const Folder& folder) {
   OutputFile file = csv(folder, "time_step_contact", "overlap_d,gamma,pair_tau");
-  for (double overlap = 0.0; overlap < 0.505; overlap += 0.02) {
+  for (int k = 0; k <= 25; ++k) {
+    const double overlap = 0.02 * k;
     for (const double gamma : {1.0, 0.0}) {
       const Material material{.gamma = gamma};
       const double w2 = 2.0 * (material.k + 3.0 * material.k3 * overlap * overlap);
