@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/output_file.h"
 
-#include <algorithm>
+#include "bpm/io/write_all.h"
+
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -24,14 +25,14 @@ OutputFile::OutputFile(const std::filesystem::path& path, FileMode mode) : path_
   if (path.extension() == ".gz") {
     gz_ = gzopen(path.c_str(), mode == FileMode::append ? "ab" : "wb");
     if (gz_ == nullptr) {
-      fail(errno);
+      cannot_be_written(path_, errno);
     }
     return;
   }
   const int how = O_WRONLY | O_CREAT | O_CLOEXEC | (mode == FileMode::append ? O_APPEND : O_TRUNC);
   descriptor_ = ::open(path.c_str(), how, 0666);
   if (descriptor_ < 0) {
-    fail(errno);
+    cannot_be_written(path_, errno);
   }
 }
 
@@ -63,14 +64,14 @@ void OutputFile::write(std::string_view bytes) {
 void OutputFile::flush() {
   flush_buffer();
   if (gz_ != nullptr && gzflush(gz_, Z_SYNC_FLUSH) != Z_OK) {
-    fail(errno);
+    cannot_be_written(path_, errno);
   }
 }
 
 void OutputFile::sync() {
   flush();
   if (descriptor_ >= 0 && fsync(descriptor_) != 0) {
-    fail(errno);
+    cannot_be_written(path_, errno);
   }
 }
 
@@ -95,7 +96,7 @@ void OutputFile::close() {
   }
   errno = 0;
   if (!drop()) {
-    fail(errno);
+    cannot_be_written(path_, errno);
   }
 }
 
@@ -113,24 +114,9 @@ void OutputFile::flush_buffer() {
 }
 
 void OutputFile::put(std::string_view bytes) {
-  while (!bytes.empty()) {
-    errno = 0;
-    const std::size_t portion = std::min<std::size_t>(bytes.size(), 1 << 30);
-    const ssize_t done = gz_ != nullptr ? gzwrite(gz_, bytes.data(), static_cast<unsigned>(portion))
-                                        : ::write(descriptor_, bytes.data(), portion);
-    if (done < 0 && errno == EINTR) {
-      continue;
-    }
-    if (done <= 0) {
-      fail(errno);
-    }
-    bytes.remove_prefix(static_cast<std::size_t>(done));
-  }
-}
-
-void OutputFile::fail(int code) const {
-  throw std::runtime_error(
-      fmt::format("{}: cannot be written: {}", path_.string(), code != 0 ? std::strerror(code) : "unknown error"));
+  write_all(bytes, path_, [this](const char* from, std::size_t n) -> ssize_t {
+    return gz_ != nullptr ? gzwrite(gz_, from, static_cast<unsigned>(n)) : ::write(descriptor_, from, n);
+  });
 }
 
 void sync_folder(const std::filesystem::path& folder) {

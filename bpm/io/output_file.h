@@ -49,7 +49,6 @@ private:
   static constexpr std::size_t flush_above = 1 << 18;
   void flush_buffer();
   void put(std::string_view bytes);
-  [[noreturn]] void fail(int code) const;
 
   std::filesystem::path path_;
   gzFile_s* gz_ = nullptr;

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/shared_file.h"
 
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
+#include "bpm/io/write_all.h"
+
 #include <fcntl.h>
-#include <fmt/format.h>
-#include <stdexcept>
 #include <unistd.h>
 #include <utility>
 
@@ -15,7 +12,7 @@ namespace boba {
 SharedFile::SharedFile(const std::filesystem::path& path) : path_(path) {
   descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor_ < 0) {
-    fail(errno);
+    cannot_be_written(path_, errno);
   }
 }
 
@@ -35,37 +32,23 @@ SharedFile::~SharedFile() {
 }
 
 void SharedFile::write(std::uint64_t at, const void* bytes, std::size_t n) {
-  const char* from = static_cast<const char*>(bytes);
-  while (n > 0) {
-    errno = 0;
-    const ssize_t done = pwrite(descriptor_, from, std::min<std::size_t>(n, 1 << 30), static_cast<off_t>(at));
-    if (done < 0 && errno == EINTR) {
-      continue;
-    }
-    if (done <= 0) {
-      fail(errno);
-    }
-    from += done;
-    at += static_cast<std::uint64_t>(done);
-    n -= static_cast<std::size_t>(done);
-  }
+  write_all({static_cast<const char*>(bytes), n}, path_, [&](const char* from, std::size_t portion) {
+    const ssize_t done = pwrite(descriptor_, from, portion, static_cast<off_t>(at));
+    at += done > 0 ? static_cast<std::uint64_t>(done) : 0;
+    return done;
+  });
 }
 
 void SharedFile::sync() {
   if (fsync(descriptor_) != 0) {
-    fail(errno);
+    cannot_be_written(path_, errno);
   }
 }
 
 void SharedFile::close() {
   if (descriptor_ >= 0 && ::close(std::exchange(descriptor_, -1)) != 0) {
-    fail(errno);
+    cannot_be_written(path_, errno);
   }
-}
-
-void SharedFile::fail(int code) const {
-  throw std::runtime_error(
-      fmt::format("{}: cannot be written: {}", path_.string(), code != 0 ? std::strerror(code) : "unknown error"));
 }
 
 } // namespace boba

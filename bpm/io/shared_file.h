@@ -25,8 +25,6 @@ public:
   void close();
 
 private:
-  [[noreturn]] void fail(int code) const;
-
   std::filesystem::path path_;
   int descriptor_ = -1;
 };
