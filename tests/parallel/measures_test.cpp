@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measures under mpirun: the same tables to the last bit, measured along a run or on its stored frames.
-#include "tests/parallel/mpirun.h"
+#include "tests/parallel/program_on_ranks.h"
 #include "tests/robustness/app/small_scene.h"
 
 #include <algorithm>
@@ -8,12 +8,6 @@
 
 namespace boba::test {
 namespace {
-
-ProgramResult boba_on(int ranks, const TemporaryFolder& folder, const std::vector<std::string>& arguments) {
-  std::vector<std::string> command{BOBA_PROGRAM};
-  command.insert(command.end(), arguments.begin(), arguments.end());
-  return run_on_ranks(ranks, (folder / "").string(), command);
-}
 
 /// Every kind of measure, with every table: ten grains, so that ranks have different numbers of them.
 std::vector<std::string> run_into(const std::string& output, const std::vector<std::string>& more = {}) {
@@ -41,14 +35,6 @@ void expect_same_tables(const std::filesystem::path& a, const std::filesystem::p
     ++n;
   }
   EXPECT_EQ(n, n_files);
-}
-
-int count_of(const std::string& text, const std::string& part) {
-  int n = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
-    ++n;
-  }
-  return n;
 }
 
 /// What one rank met ends all of them, told once.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The program under mpirun: the same scene, the same files, to the last bit; stopped on some ranks and gone on with on
 // others.
-#include "tests/parallel/mpirun.h"
+#include "tests/parallel/program_on_ranks.h"
 #include "tests/robustness/app/same_run.h"
 
 #include <algorithm>
@@ -10,12 +10,6 @@
 namespace boba::test {
 namespace {
 
-ProgramResult boba_on(int ranks, const TemporaryFolder& folder, const std::vector<std::string>& arguments) {
-  std::vector<std::string> command{BOBA_PROGRAM};
-  command.insert(command.end(), arguments.begin(), arguments.end());
-  return run_on_ranks(ranks, (folder / "").string(), command);
-}
-
 std::vector<std::string> run_into(const std::string& output, const std::vector<std::string>& more = {}) {
   std::vector<std::string> arguments{
       "run",   "scene.toml",         "--output", output,
@@ -23,14 +17,6 @@ std::vector<std::string> run_into(const std::string& output, const std::vector<s
       "--set", "stage.2.strain=0.1", "--set",    "measure=[{what = \"motion, order\", every_strain = 0.05}]"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
-}
-
-int count_of(const std::string& text, const std::string& part) {
-  int n = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
-    ++n;
-  }
-  return n;
 }
 
 TEST(ProgramOnRanks, WritesTheSameFiles) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A write that fails on one of several ranks: one message that names the file, exit code 1, nobody waits for ever, and
 // what is left can be gone on from on other ranks, to the same end.
-#include "tests/parallel/mpirun.h"
+#include "tests/parallel/program_on_ranks.h"
 #include "tests/robustness/app/same_run.h"
 
 #include <gtest/gtest.h>
@@ -18,14 +18,6 @@ const std::vector<std::string> settings = {"--quiet",
                                            "output.checkpoint.every_time=150",
                                            "--set",
                                            "output.trajectory.every_strain=0.005"};
-
-int count_of(const std::string& text, const std::string& part) {
-  int n = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
-    ++n;
-  }
-  return n;
-}
 
 class WriteErrorsOnRanks : public ::testing::Test {
 protected:
