@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/packing/insertion.h"
 
+#include "bpm/grain/near_pairs.h"
 #include "bpm/grain/random.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
@@ -19,7 +21,7 @@ namespace {
 constexpr double densest = 0.60;
 constexpr int most_sweeps = 10000;
 constexpr double largest_edge = 1e7; ///< d; double positions still resolve 2e-9 d there
-constexpr double inflation = 1e-3; ///< the spheres that are pushed apart are a little larger than the real ones
+constexpr double inflation = 1e-3;   ///< the spheres that are pushed apart are a little larger than the real ones
 
 double sphere_volume(double radius) {
   return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
@@ -59,11 +61,11 @@ private:
   }
 
   void push_all_images(const std::vector<Vector3>& x, std::vector<Vector3>& move) {
+    const std::array<Vector3, 27> shifts = image_shifts(Vector3::Constant(edge_));
     for (std::size_t i = 0; i < x.size(); ++i) {
       for (std::size_t j = i + 1; j < x.size(); ++j) {
-        for (int image = 0; image < 27; ++image) {
-          const Vector3 shift = Eigen::Vector3i(image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1).cast<double>();
-          push_pair(i, j, x[i] - x[j] + edge_ * shift, move);
+        for (const Vector3& shift : shifts) {
+          push_pair(i, j, x[i] - x[j] + shift, move);
         }
       }
     }
@@ -199,8 +201,9 @@ Packing insert_at_random(const Insertion& insertion) {
   }
   const double edge = std::cbrt(reference_volume_of(insertion) / insertion.packing_fraction);
   if (!(edge < largest_edge)) {
-    throw std::invalid_argument(fmt::format("insert: packing_fraction = {:g} makes a cell of edge {:g} d; allowed: below {:g} d",
-                                            insertion.packing_fraction, edge, largest_edge));
+    throw std::invalid_argument(
+        fmt::format("insert: packing_fraction = {:g} makes a cell of edge {:g} d; allowed: below {:g} d",
+                    insertion.packing_fraction, edge, largest_edge));
   }
   std::vector<double> radii;
   for (const Grain& grain : insertion.grains) {
