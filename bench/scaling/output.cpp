@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Seconds that a trajectory frame and a checkpoint take on the ranks it is started on, and each rank's largest memory.
 // The packing is a grid of grains without bonds; no step is made. Prints one line of JSON.
+#include "bpm/dynamics/share_state.h"
 #include "bpm/dynamics/stepper.h"
 #include "bpm/io/checkpoint.h"
 #include "bpm/io/shared_trajectory.h"
@@ -110,9 +111,10 @@ double checkpoint_seconds(const Arguments& a, const Stepper& stepper) {
   return median_seconds(a.repeats, stepper.ranks(), [&](int) {
     SavedState state;
     stepper.save(state);
-    write_checkpoint(
-        a.folder, {{}, std::move(state.real), std::move(state.integer)}, stepper.ranks(),
-        {{"force", "position", "velocity"}, node_runs(stepper.layout().grains(), first_node), first_node.back()});
+    write_checkpoint(a.folder, {{}, std::move(state.real), std::move(state.integer)}, stepper.ranks(),
+                     {{entries_of_nodes.begin(), entries_of_nodes.end()},
+                      node_runs(stepper.layout().grains(), first_node),
+                      first_node.back()});
   });
 }
 

@@ -2,13 +2,13 @@
 #include "bpm/app/checkpoint_observer.h"
 
 #include "bpm/app/version.h"
+#include "bpm/dynamics/share_state.h"
 #include "bpm/dynamics/simulation.h"
 #include "bpm/io/input_error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <set>
 #include <stdexcept>
 
 namespace boba {
@@ -170,28 +170,11 @@ CheckpointData constant_part(const RunSetup& setup, const Simulation& simulation
   return data;
 }
 
-namespace {
-
-const std::set<std::string> of_nodes = {"position", "velocity", "force"};
-
-template <class Values> void share(std::map<std::string, Values>& entries, const Ranks& ranks) {
-  std::string names;
-  for (const auto& [name, values] : entries) {
-    names += of_nodes.contains(name) ? "" : name + "\n";
-  }
-  ranks.broadcast(names);
-  for (const std::string& name : lines(names)) {
-    ranks.broadcast(entries[name]);
-  }
-}
-
-} // namespace
-
 void share_checkpoint(LatestCheckpoint& checkpoint, const Ranks& ranks) {
   if (ranks.many()) {
-    share(checkpoint.data.text, ranks);
-    share(checkpoint.data.real, ranks);
-    share(checkpoint.data.integer, ranks);
+    share_but_nodes(checkpoint.data.text, ranks);
+    share_but_nodes(checkpoint.data.real, ranks);
+    share_but_nodes(checkpoint.data.integer, ranks);
     std::string path = checkpoint.path.string();
     ranks.broadcast(path);
     checkpoint.path = path;
@@ -273,7 +256,7 @@ std::filesystem::path CheckpointObserver::write(const Simulation& simulation) {
   const std::vector<std::int64_t> first_node = simulation.packing().first_nodes();
   return write_checkpoint(
       folder_, data_, simulation.ranks(),
-      {{of_nodes.begin(), of_nodes.end()}, node_runs(simulation.own_grains(), first_node), first_node.back()});
+      {{entries_of_nodes.begin(), entries_of_nodes.end()}, node_runs(simulation.own_grains(), first_node), first_node.back()});
 }
 
 } // namespace boba

@@ -39,10 +39,7 @@ void check_instruction_set(const LatestCheckpoint& checkpoint, bool allow_other)
 /// Rank 0 reads; the others get everything but the nodes, which the simulation hands out.
 LatestCheckpoint read(const ResumeArguments& a, const OutputFolder& folder, const Ranks& ranks) {
   LatestCheckpoint checkpoint;
-  ranks.together([&] {
-    if (!ranks.is_root()) {
-      return;
-    }
+  ranks.on_root([&] {
     checkpoint = latest_checkpoint(folder.checkpoints());
     for (const std::string& refused : checkpoint.refused) {
       fmt::print(stderr, "boba: warning: {}; going on from {}\n", refused, checkpoint.path.string());

@@ -156,7 +156,7 @@ private:
 
   ExitCode finish() {
     if (writers_.trajectory) {
-      ranks_.together([&] { writers_.trajectory->close(); });
+      writers_.trajectory->close();
     }
     const Timings t = simulation_.timings();
     log_.note(fmt::format("seconds: bonds {:.2f}, contacts {:.2f}, search {:.2f}, integration {:.2f}; {} steps, {} "

@@ -2,6 +2,7 @@
 #include "bpm/dynamics/simulation.h"
 
 #include "bpm/dynamics/blow_up.h"
+#include "bpm/dynamics/share_state.h"
 #include "bpm/dynamics/stage_driver.h"
 #include "bpm/dynamics/stepper.h"
 
@@ -9,8 +10,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
-#include <set>
-#include <sstream>
 #include <stdexcept>
 
 namespace boba {
@@ -222,28 +221,13 @@ SavedState Simulation::save() const {
 
 namespace {
 
-/// Names of the numbers that belong to single nodes; rank 0 alone has them.
-const std::set<std::string> node_names = {"position", "velocity", "force"};
-
-template <class Number> void share_small(std::map<std::string, std::vector<Number>>& numbers, const Ranks& ranks) {
-  std::string names;
-  for (const auto& [name, values] : numbers) {
-    names += node_names.contains(name) ? "" : name + "\n";
-  }
-  ranks.broadcast(names);
-  std::istringstream lines(names);
-  for (std::string name; std::getline(lines, name);) {
-    ranks.broadcast(numbers[name]);
-  }
-}
-
 /// Rank 0's state for all, but for the nodes.
 SavedState shared(SavedState state, const Ranks& ranks) {
   if (!ranks.is_root()) {
     state = {};
   }
-  share_small(state.real, ranks);
-  share_small(state.integer, ranks);
+  share_but_nodes(state.real, ranks);
+  share_but_nodes(state.integer, ranks);
   return state;
 }
 
@@ -265,7 +249,7 @@ void Simulation::restore(const SavedState& of_root) {
     impl_->saved_in_stage.reset();
     if (state.integer.at("stage").at(1) != 0) {
       impl_->saved_in_stage = std::make_unique<SavedState>(state);
-      for (const std::string& name : node_names) {
+      for (const std::string& name : entries_of_nodes) {
         impl_->saved_in_stage->real.erase(name);
         impl_->saved_in_stage->integer.erase(name);
       }

@@ -168,10 +168,7 @@ void Stepper::save_nodes(SavedState& saved) const {
 
 void Stepper::restore_nodes(const SavedState& saved) {
   std::vector<std::byte> nodes;
-  ranks().together([&] {
-    if (!ranks().is_root()) {
-      return;
-    }
+  ranks().on_root([&] {
     const auto n = static_cast<std::size_t>(3 * packing_.first_nodes().back());
     const std::vector<double>&v = saved.real.at("velocity"), &f = saved.real.at("force");
     nodes = options_.precision == Precision::full

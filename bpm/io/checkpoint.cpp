@@ -278,13 +278,6 @@ std::filesystem::path write_checkpoint(const std::filesystem::path& directory, c
   const std::uint64_t number = before.empty() ? 1 : before.front().number + 1;
   std::filesystem::path path = directory / checkpoint_name(number);
   std::string beside = path.string() + ".part";
-  const auto on_root = [&](const auto& work) {
-    ranks.together([&] {
-      if (ranks.is_root()) {
-        work();
-      }
-    });
-  };
   const auto tell = [&](const std::exception& error) {
     std::error_code ignored;
     if (ranks.is_root()) {
@@ -294,7 +287,7 @@ std::filesystem::path write_checkpoint(const std::filesystem::path& directory, c
                        before.empty() ? "" : fmt::format("; the last one remains: {}", before.front().path.string()));
   };
   try {
-    on_root([&] {
+    ranks.on_root([&] {
       std::filesystem::create_directories(directory);
       OutputFile(beside, FileMode::overwrite).close();
     });
@@ -302,7 +295,7 @@ std::filesystem::path write_checkpoint(const std::filesystem::path& directory, c
     std::optional<PieceWriter> out;
     std::vector<std::uint64_t> places;
     ranks.together([&] { out.emplace(beside); });
-    on_root([&] { places = write_entries(*out, data, nodes); });
+    ranks.on_root([&] { places = write_entries(*out, data, nodes); });
     ranks.broadcast(places);
     ranks.together([&] {
       write_nodes(*out, data, nodes, places);
@@ -312,7 +305,7 @@ std::filesystem::path write_checkpoint(const std::filesystem::path& directory, c
       }
     });
     const std::vector<Piece> pieces = ranks.gathered(out->pieces());
-    on_root([&] {
+    ranks.on_root([&] {
       write_checksum(out->file(), pieces);
       out->file().sync();
       out->file().close();

@@ -31,8 +31,7 @@ struct LatestCheckpoint {
 /// The file is written beside its final name, fsynced with its folder and only then renamed, so a crash at any moment
 /// leaves the older ones intact; it carries its length and a checksum (CRC-32) of all its bytes. Of the whole
 /// checkpoints the newest `keep` remain, older files are removed. \throws std::runtime_error when it cannot be written
-/// (disk full,
-/// ...); the older ones then remain.
+/// (disk full, ...); the older ones then remain.
 std::filesystem::path write_checkpoint(const std::filesystem::path& directory, const CheckpointData& data,
                                        int keep = 2);
 

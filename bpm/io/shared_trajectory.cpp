@@ -40,11 +40,9 @@ std::vector<Vector3> in_order(const std::vector<Vector3>& rows, const std::vecto
 SharedTrajectory::SharedTrajectory(const Ranks& ranks, const std::filesystem::path& path,
                                    std::vector<std::int64_t> first_node, const Open& open)
     : ranks_(ranks), first_node_(std::move(first_node)) {
-  ranks.together([&] {
-    if (ranks.is_root()) {
-      writer_.emplace(open(ranks.many()));
-      is_compressed_ = writer_->is_compressed();
-    }
+  ranks.on_root([&] {
+    writer_.emplace(open(ranks.many()));
+    is_compressed_ = writer_->is_compressed();
   });
   if (ranks.many()) {
     ranks.broadcast(is_compressed_);
@@ -72,12 +70,10 @@ void SharedTrajectory::write_together(const Snapshot& own) {
     TrajectoryWriter::NodePlaces places;
     bool is_new = false;
   } frame;
-  ranks_.together([&] {
-    if (ranks_.is_root()) {
-      frame.is_new = writer_->is_new(own);
-      if (frame.is_new && !is_compressed_) {
-        frame.places = writer_->make_room(own);
-      }
+  ranks_.on_root([&] {
+    frame.is_new = writer_->is_new(own);
+    if (frame.is_new && !is_compressed_) {
+      frame.places = writer_->make_room(own);
     }
   });
   ranks_.broadcast(frame);
@@ -89,11 +85,7 @@ void SharedTrajectory::write_together(const Snapshot& own) {
     return;
   }
   ranks_.together([&] { write_nodes(own, frame.places); });
-  ranks_.together([&] {
-    if (ranks_.is_root()) {
-      writer_->finish(own);
-    }
-  });
+  ranks_.on_root([&] { writer_->finish(own); });
 }
 
 void SharedTrajectory::write_nodes(const Snapshot& own, const TrajectoryWriter::NodePlaces& places) {
@@ -116,14 +108,12 @@ void SharedTrajectory::write_nodes(const Snapshot& own, const TrajectoryWriter::
 void SharedTrajectory::write_gathered(const Snapshot& own) {
   const std::vector<int> grains = ranks_.gathered(own.grains);
   std::vector<Vector3> position = ranks_.gathered(own.position), velocity = ranks_.gathered(own.velocity);
-  ranks_.together([&] {
-    if (ranks_.is_root()) {
-      const std::vector<NodeRun> runs = node_runs(grains, first_node_);
-      Snapshot whole = own;
-      whole.position = in_order(position, runs, first_node_.back());
-      whole.velocity = velocity.empty() ? velocity : in_order(velocity, runs, first_node_.back());
-      writer_->write(whole);
-    }
+  ranks_.on_root([&] {
+    const std::vector<NodeRun> runs = node_runs(grains, first_node_);
+    Snapshot whole = own;
+    whole.position = in_order(position, runs, first_node_.back());
+    whole.velocity = velocity.empty() ? velocity : in_order(velocity, runs, first_node_.back());
+    writer_->write(whole);
   });
 }
 

@@ -101,6 +101,15 @@ public:
     agree(failure);
   }
 
+  /// The same for work that is rank 0's alone.
+  template <class Work> void on_root(Work&& work) const {
+    together([&] {
+      if (is_root()) {
+        work();
+      }
+    });
+  }
+
 private:
   struct Failure {
     bool failed = false, wrong_input = false;

@@ -209,11 +209,7 @@ MeasureRunResult measure_run(const MeasureRunOptions& options, const Ranks& rank
       ++result.n_frames;
     }
   }
-  ranks.together([&] {
-    if (ranks.is_root()) {
-      result.averages = write_averages(result.folder / "averages.json", *tables, options.window);
-    }
-  });
+  ranks.on_root([&] { result.averages = write_averages(result.folder / "averages.json", *tables, options.window); });
   return result;
 }
 

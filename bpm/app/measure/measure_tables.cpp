@@ -152,11 +152,7 @@ void MeasureTables::add(const Snapshot& snapshot) {
   if (plan_.has(MeasureKind::stress)) {
     frame.grain_stress = frame_stress_ ? frame_stress_->evaluate(snapshot) : snapshot.grain_stress;
   }
-  ranks_.together([&] {
-    if (ranks_.is_root()) {
-      write_frame(frame);
-    }
-  });
+  ranks_.on_root([&] { write_frame(frame); });
 }
 
 void MeasureTables::write_frame(Frame& frame) {
