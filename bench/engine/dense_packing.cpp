@@ -5,11 +5,14 @@
 #include "bpm/dynamics/stepper.h"
 #include "bpm/grain/template_cache.h"
 #include "bpm/io/checkpoint.h"
+#include "bpm/io/input_error.h"
 #include "bpm/packing/insertion.h"
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 namespace boba::bench {
 
@@ -65,13 +68,26 @@ void copy_into(std::vector<Vector3>& vectors, const std::vector<double>& numbers
   std::copy(numbers.begin(), numbers.end(), vectors.front().data());
 }
 
+/// The state in a folder of the cache; nothing when there is none, or none that this version reads.
+std::optional<CheckpointData> kept_in(const std::filesystem::path& store) {
+  if (!std::filesystem::exists(store)) {
+    return std::nullopt;
+  }
+  try {
+    return latest_checkpoint(store).data;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 } // namespace
 
 Packing dense_packing(int n_grains, int n_nodes, double alpha) {
   Packing packing = loose_packing(n_grains, n_nodes, alpha);
   const std::filesystem::path store =
       default_cache_directory() / fmt::format("dense-{}x{}-alpha{}", n_grains, n_nodes, alpha);
-  if (!std::filesystem::exists(store)) {
+  std::optional<CheckpointData> kept = kept_in(store);
+  if (!kept) {
     const Snapshot dense = compressed_and_sheared(packing, dense_pressure(alpha));
     CheckpointData data;
     data.real["position"] = flat(dense.position);
@@ -79,11 +95,11 @@ Packing dense_packing(int n_grains, int n_nodes, double alpha) {
     data.real["cell"] = {dense.box.h().data(), dense.box.h().data() + 9};
     std::filesystem::create_directories(store);
     write_checkpoint(store, data);
+    kept = std::move(data);
   }
-  const CheckpointData data = latest_checkpoint(store).data;
-  copy_into(packing.position, data.real.at("position"));
-  copy_into(packing.velocity, data.real.at("velocity"));
-  packing.box.set_h(Eigen::Map<const Matrix3>(data.real.at("cell").data()));
+  copy_into(packing.position, kept->real.at("position"));
+  copy_into(packing.velocity, kept->real.at("velocity"));
+  packing.box.set_h(Eigen::Map<const Matrix3>(kept->real.at("cell").data()));
   return packing;
 }
 

@@ -21,12 +21,14 @@ void check(PetscErrorCode code, const char* doing) {
   }
 }
 
-/// So many bytes as one item.
+/// So many bytes as one item: of doubles where they fit, since PETSc copies number by number.
 MPI_Datatype item_type(std::size_t bytes) {
   static std::map<std::size_t, MPI_Datatype> types;
   const auto [at, is_new] = types.try_emplace(bytes, MPI_DATATYPE_NULL);
   if (is_new) {
-    MPI_Type_contiguous(static_cast<int>(bytes / sizeof(int)), MPI_INT, &at->second);
+    const bool doubles = bytes % sizeof(double) == 0;
+    MPI_Type_contiguous(static_cast<int>(bytes / (doubles ? sizeof(double) : sizeof(int))),
+                        doubles ? MPI_DOUBLE : MPI_INT, &at->second);
     MPI_Type_commit(&at->second);
   }
   return at->second;
