@@ -382,6 +382,9 @@ void File::close() {
   flush();
   const auto [descriptor, length] = descriptor_and_length();
   check(ftruncate(descriptor, static_cast<off_t>(length)), "giving back reserved space");
+  // Closing writes the superblock once more, to say that nobody has the file open for writing; nobody reads that in a
+  // superblock of this version, and were the write to fail it would go unseen, or HDF5 crash. All else is on the disk.
+  let_go();
   id_ = Handle();
 }
 
