@@ -16,7 +16,7 @@ NODES = 64 * 303
 def evaluate(runner, plan):
     """Rows of the table: all axes whose runs are there."""
     rows = []
-    for axis in (step_rows, precision_rows, skin_rows, rate_rows, peer_rows, long_rows, press_rows, fraction_rows,
+    for axis in (step_rows, precision_rows, skin_rows, rate_rows, peer_rows, long_rows, many_body_rows, press_rows, fraction_rows,
                  facet_rows, box_rows, tolerance_rows, specimen_rows):
         rows += axis(runner, plan)
     return rows
@@ -82,8 +82,8 @@ def difference(one, other, quantity, first, last):
     return a - b if quantity == "mu" else (a - b) / np.mean(b)
 
 
-def path_rows(runner, axis, setting, run, reference, last, precision="double"):
-    """Root-mean-square distance from the reference's path up to a small strain, and the mean distance after it."""
+def path_rows(runner, axis, setting, run, reference, last, precision="double", first=0.0):
+    """Root-mean-square distance from the reference's path up to a small strain (from `first`), and the mean distance after it."""
     record, one, other = runner.record(run.name), curve(runner, run), curve(runner, reference)
     if record and record["exit_code"] != 0:
         return [row(axis, setting, precision, "failed", record["exit_code"], "", record["cpu_seconds"], "", run.name)]
@@ -92,7 +92,7 @@ def path_rows(runner, axis, setting, run, reference, last, precision="double"):
     rows = []
     early = min(0.05, last / 4)
     for quantity in ("P", "mu"):
-        near = root_mean_square(difference(one, other, quantity, 0, early))
+        near = root_mean_square(difference(one, other, quantity, first, early))
         far = blocks(difference(one, other, quantity, early * 2, last), 6)
         for name, (error, bar) in ((f"{quantity}, path to strain {early:g}", near), (f"{quantity}, mean from strain {2 * early:g}", far)):
             rows.append(row(axis, setting, precision, name, error, bar, record["cpu_seconds"], reference.name, run.name))
@@ -175,16 +175,39 @@ def peer_rows(runner, plan):
 
 def long_rows(runner, plan):
     """Means of long runs in double and mixed, with block errors: values, not differences."""
+    return [r for precision in ("double", "mixed")
+            for r in mean_rows(runner, plan, "long run", plan.long_strain, axes.packing(strain=plan.long_strain, precision=precision),
+                               precision)]
+
+
+def mean_rows(runner, plan, axis, setting, run, precision):
+    """Means of one long run."""
+    one = curve(runner, run)
+    if one is None:
+        return []
+    late = one["strain"] > plan.long_strain / 10
+    return [row(axis, setting, precision, f"{quantity}, value", *blocks(one[quantity][late], 9), done(runner, run)["cpu_seconds"],
+                "none: the value", run.name) for quantity in ("P", "mu", "kinetic")]
+
+
+def many_body_rows(runner, plan):
+    """Time step and precision at other alphas. The state was at rest at alpha = 0: how it finds its new pressure is left out."""
     rows = []
-    for precision in ("double", "mixed"):
-        run = axes.packing(strain=plan.long_strain, precision=precision)
-        one = curve(runner, run)
-        if one is None:
-            continue
-        late = one["strain"] > plan.long_strain / 10
-        for quantity in ("P", "mu", "kinetic"):
-            rows.append(row("long run", plan.long_strain, precision, f"{quantity}, value", *blocks(one[quantity][late], 9),
-                            done(runner, run)["cpu_seconds"], "none: the value", run.name))
+    start = min(0.01, plan.strain / 8)
+    for alpha in plan.alphas:
+        def run(**values):
+            return axes.packing(alpha=alpha, **values)
+        reference, default = run(dt=min(plan.alpha_steps), strain=plan.strain), run(strain=plan.strain)
+        for dt in plan.alpha_steps:
+            rows += path_rows(runner, f"time step, alpha {alpha:g}", dt, run(dt=dt, strain=plan.strain), reference, plan.strain,
+                              first=start)
+        rows += cost_row(runner, f"time step, alpha {alpha:g}", min(plan.alpha_steps), reference)
+        rows += path_rows(runner, f"precision, alpha {alpha:g}", f"dt {axes.STEP:g}", run(precision="mixed", strain=plan.strain), default,
+                          plan.strain, "mixed", start)
+        for dt in plan.twin_steps:
+            for precision in ("double", "mixed"):
+                rows += mean_rows(runner, plan, f"long run, alpha {alpha:g}", f"dt {dt:g}",
+                                  run(dt=dt, precision=precision, strain=plan.long_strain), precision)
     return rows
 
 

@@ -56,6 +56,9 @@ class Plan:
         self.mixed_rates = pick((1.024e-3, 2.56e-4, 6.4e-5, 1.6e-5), (1.024e-3,))
         self.rate_strain = pick(0.1, 0.02)
         self.long_strain = pick(2.0, 0.1)
+        self.alphas = pick((2.0, -0.8), (2.0,))  # beside 0, where all axes are
+        self.twin_steps = pick((STEP, 0.099), (STEP,))  # the second makes another path of the same long run
+        self.alpha_steps = pick((0.02, 0.05, 0.1, 0.13, 0.16), (0.05, 0.1))
         self.points = pick((1000, 10_000, 100_000, 1_000_000), (1000, 10_000))
         self.reference_points = pick(10_000_000, 100_000)
         self.point_seeds = pick((1, 2, 3, 4), (1, 2))
@@ -68,14 +71,17 @@ class Plan:
         self.velocities = pick((1.6e-2, 8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 1.25e-4, 3.125e-5), (4e-3, 2e-3))
 
 
-def packing(dt=STEP, precision="double", skin=SKIN, rate=RATE, strain=0.1, held=False, frames=False):
+def packing(dt=STEP, precision="double", skin=SKIN, rate=RATE, strain=0.1, held=False, frames=False, alpha=0.0):
     """A shear of the packing, at constant volume or at the recorded run's pressure."""
     rate = HELD["rate"] if held else rate
     name = f"packing-{precision}-dt{dt:g}-skin{skin:g}-rate{rate:g}-strain{strain:g}" + "-held" * held + "-frames" * frames
+    name += f"-alpha{alpha:g}" if alpha != 0.0 else ""
     values = {"run.dt": dt, "run.precision": f'"{precision}"', "run.skin": skin, "stage.shear.rate": rate,
               "stage.shear.strain": strain}
     if held:
         values |= {"stage.shear.pressure": HELD["pressure"], "stage.shear.gain": HELD["gain"]}
+    if alpha != 0.0:
+        values["start.alpha"] = alpha
     if frames:
         values |= {"output.trajectory.every_strain": strain}
     return engine(name, "packing.toml", values)
@@ -143,6 +149,14 @@ def engine_runs(plan):
     return runs + [packing(rate=rate, precision="mixed", strain=plan.rate_strain) for rate in plan.mixed_rates]
 
 
+def many_body_runs(plan):
+    """Time step and precision with the many-body force."""
+    runs = [packing(dt, strain=plan.strain, alpha=alpha) for alpha in plan.alphas for dt in sorted(plan.alpha_steps, reverse=True)]
+    runs += [packing(precision="mixed", strain=plan.strain, alpha=alpha) for alpha in plan.alphas]
+    return runs + [packing(dt, precision, strain=plan.long_strain, alpha=alpha)
+                   for alpha in plan.alphas for dt in plan.twin_steps for precision in ("double", "mixed")]
+
+
 def specimen_runs(plan):
     """A sphere between walls."""
     runs = [press(velocity=0.01, warm=True)]
@@ -166,4 +180,4 @@ def calibration_runs(plan):
 
 def all_runs(plan):
     """Everything, each run after those it needs."""
-    return unique(measure_runs(plan) + specimen_runs(plan) + engine_runs(plan) + calibration_runs(plan))
+    return unique(measure_runs(plan) + specimen_runs(plan) + engine_runs(plan) + many_body_runs(plan) + calibration_runs(plan))
