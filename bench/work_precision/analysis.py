@@ -204,7 +204,7 @@ def many_body_rows(runner, plan):
         rows += cost_row(runner, f"time step, alpha {alpha:g}", min(plan.alpha_steps), reference)
         rows += path_rows(runner, f"precision, alpha {alpha:g}", f"dt {axes.STEP:g}", run(precision="mixed", strain=plan.strain), default,
                           plan.strain, "mixed", start)
-        for dt in plan.twin_steps:
+        for dt in plan.twin_steps[alpha]:
             for precision in ("double", "mixed"):
                 rows += mean_rows(runner, plan, f"long run, alpha {alpha:g}", f"dt {dt:g}",
                                   run(dt=dt, precision=precision, strain=plan.long_strain), precision)

@@ -57,7 +57,8 @@ class Plan:
         self.rate_strain = pick(0.1, 0.02)
         self.long_strain = pick(2.0, 0.1)
         self.alphas = pick((2.0, -0.8), (2.0,))  # beside 0, where all axes are
-        self.twin_steps = pick((STEP, 0.099), (STEP,))  # the second makes another path of the same long run
+        # All but the first make other paths of the same long run.
+        self.twin_steps = pick({2.0: [STEP - 0.001 * k for k in range(10)], -0.8: [STEP - 0.001 * k for k in range(4)]}, {2.0: [STEP]})
         self.alpha_steps = pick((0.02, 0.05, 0.1, 0.13, 0.16), (0.05, 0.1))
         self.points = pick((1000, 10_000, 100_000, 1_000_000), (1000, 10_000))
         self.reference_points = pick(10_000_000, 100_000)
@@ -154,7 +155,7 @@ def many_body_runs(plan):
     runs = [packing(dt, strain=plan.strain, alpha=alpha) for alpha in plan.alphas for dt in sorted(plan.alpha_steps, reverse=True)]
     runs += [packing(precision="mixed", strain=plan.strain, alpha=alpha) for alpha in plan.alphas]
     return runs + [packing(dt, precision, strain=plan.long_strain, alpha=alpha)
-                   for alpha in plan.alphas for dt in plan.twin_steps for precision in ("double", "mixed")]
+                   for alpha in plan.alphas for dt in plan.twin_steps[alpha] for precision in ("double", "mixed")]
 
 
 def specimen_runs(plan):

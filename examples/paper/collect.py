@@ -13,6 +13,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
 import boba
+from boba.run import read_table
 
 COMPACTION_PRESSURES = np.geomspace(1e-5, 0.5, 60)
 SCATTERING_PRESSURES = (1e-2, 3e-2, 0.1, 0.2, 0.5)
@@ -205,6 +206,22 @@ TABLES = {"summary": summary, "compaction": compaction, "scattering": scattering
           "structure": structure, "distributions": distributions, "traces": traces}
 
 
+def peer(out, results):
+    """Means of YADE's runs of the rigid spheres, OUT/yade_r*.csv (yade_spheres.py): results/yade.csv."""
+    rows = []
+    for path in sorted(pathlib.Path(out).glob("yade_r*.csv")):
+        table = read_table(path)
+        inside = (table["strain"] > 1.0) & (table["strain"] < 5.0)
+        mu, error = boba.blocked_mean(table["mu"][inside])
+        pressure = table["P_k/d"][inside].mean()
+        rate = float(path.stem.removeprefix("yade_r"))
+        rows.append({"rate": f"{rate:g}", "inertial_number": f"{rate * np.sqrt(6.0 / np.pi / pressure):.4g}",
+                     "to_strain": f"{table['strain'][-1]:.2f}", "P": f"{pressure:.4g}", "mu": f"{mu:.4f}", "mu_error": f"{error:.4f}",
+                     "phi": f"{table['phi'][inside].mean():.4f}", "phi_start": f"{table['phi_at_rest'][0]:.4f}"})
+    if rows:
+        write(results / "yade.csv", rows)
+
+
 def write(path, rows):
     names = list(rows[0]) if rows else ["name"]
     with path.open("w", newline="") as file:
@@ -231,6 +248,7 @@ def main(plan, out, results):
             rows += old if new is None else [{"name": spec["name"]} | row for row in new]
         write(path, rows)
         print(f"{path}: {len(rows)} rows")
+    peer(out, results)
 
 
 if __name__ == "__main__":

@@ -35,6 +35,10 @@ class Results:
         """Names of the planned runs with these parameters, in the plan's order."""
         return [name for name, row in self.plan.items() if all(row[key] == str(value) for key, value in equal.items())]
 
+    def peer(self, rate):
+        """YADE's run of the rigid spheres at this rate: one row or none."""
+        return [row for row in self.tables.get("yade", []) if float(row["rate"]) == float(rate)]
+
     def reached(self, name):
         rows = self.rows("summary", name)
         return float(rows[0]["strain"]) if rows else 0.0

@@ -182,6 +182,10 @@ def rigid_rows(table, results):
         table.number(f"the same: phi at I = {number:.2g}", 0.64, [float(row["phi_reference"])], np.nan, why)
         table.text("the same: crystal", "none (strain 1000)", f"share {late_order(results, name):.2f} at the end",
                    "far shorter")
+        for peer in results.peer(results.plan[name]["rate"]):
+            table.text(f"the same: mu and phi at I = {number:.2g} in YADE", "-",
+                       f"{float(peer['mu']):.3f} +- {float(peer['mu_error']):.3f}, phi {float(peer['phi']):.3f} (at rest {float(peer['phi_start']):.3f})",
+                       "an independent program, same law, number, pressure and rate; velocities follow the cell")
 
 
 def total_rows(results):
