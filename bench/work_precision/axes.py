@@ -58,7 +58,7 @@ class Plan:
         self.long_strain = pick(2.0, 0.1)
         self.alphas = pick((2.0, -0.8), (2.0,))  # beside 0, where all axes are
         # All but the first make other paths of the same long run.
-        self.twin_steps = pick({2.0: [STEP - 0.001 * k for k in range(10)], -0.8: [STEP - 0.001 * k for k in range(4)]}, {2.0: [STEP]})
+        self.twin_steps = pick({2.0: [STEP - 0.001 * k for k in range(9)], -0.8: [STEP - 0.001 * k for k in range(4)]}, {2.0: [STEP]})
         self.alpha_steps = pick((0.02, 0.05, 0.1, 0.13, 0.16), (0.05, 0.1))
         self.points = pick((1000, 10_000, 100_000, 1_000_000), (1000, 10_000))
         self.reference_points = pick(10_000_000, 100_000)
