@@ -24,13 +24,13 @@ class Table:
         self.lines = ["| what | published | Boba +- error | difference in errors | why |", "| --- | --- | --- | --- | --- |"]
 
     def number(self, what, published, values, error, why):
-        """`values`: one a run. The error is that of their mean when there are several, else the given one."""
+        """`values`: one a run; `error` that of one. Few runs may agree by chance: their mean has the larger of the two errors."""
         if not len(values):
             self.lines.append(f"| {what} | {published:g} | not afforded | | {why} |")
             return
         mean = float(np.mean(values))
         if len(values) > 1:
-            error = np.std(values, ddof=1) / np.sqrt(len(values))
+            error = np.fmax(np.std(values, ddof=1), error) / np.sqrt(len(values))
         apart = f"{(mean - published) / error:+.0f}" if np.isfinite(error) and error > 0 else "no error known"
         runs = f" ({len(values)} runs)" if len(values) > 1 else ""
         self.lines.append(f"| {what} | {published:g} | {value_text(mean, error)}{runs} | {apart} | {why} |")
