@@ -84,14 +84,14 @@ void rebuild(const std::filesystem::path& path, std::int64_t last_step) {
     TrajectoryWriter writer(copy, reader.topology(), reader.origin(),
                             {reader.has_velocity(), from.compression(value_of(position))}, FileMode::overwrite);
     writer.close();
-    const File to = File::open(copy, true);
+    File to = File::open(copy, true);
     if (from.has_attribute(box, "boundary")) {
       to.set_attribute(box, "boundary", from.texts_attribute(box, "boundary"));
     }
     const std::vector<std::int64_t>& steps = reader.steps();
     copy_frames(from, to,
                 static_cast<hsize_t>(std::upper_bound(steps.begin(), steps.end(), last_step) - steps.begin()));
-    to.flush();
+    to.close();
   }
   std::filesystem::rename(copy, path);
 }
