@@ -16,7 +16,7 @@ import platform
 import subprocess
 import sys
 
-ENGINE = "dense_shear/grains:(16/nodes:5137/alpha:2|64/nodes:300/alpha:2)/threads:1"
+ENGINE = "dense_shear/fastest/grains:(16/nodes:5137/alpha:2|64/nodes:300/alpha:2)/threads:1"
 REFERENCE = ("vector_multiply_adds", "triad/1024")
 ALLOWED_LOSS = 0.15
 

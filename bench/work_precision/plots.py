@@ -22,7 +22,7 @@ def draw(rows, folder):
 
 
 def panel(axis, rows, title, ylabel, label=True, style="o-", colour=None, name=None):
-    """One curve of absolute error with its bar against seconds, points named by their setting."""
+    """One curve of absolute error with its bar against seconds; `label` names the points by their setting."""
     rows = sorted((r for r in rows if r["error"] != 0), key=lambda r: r["setting"])
     axis.set(title=title, xlabel="processor seconds", ylabel=ylabel)
     axis.grid(alpha=0.3, which="both")
@@ -37,7 +37,7 @@ def panel(axis, rows, title, ylabel, label=True, style="o-", colour=None, name=N
     axis.xaxis.set_minor_formatter(ticker.NullFormatter())
     for r, a, b in zip(rows, x, y) if label else ():
         text = r["setting"] if isinstance(r["setting"], str) else f"{r['setting']:g}"
-        axis.annotate(text, (a, b), fontsize=6, xytext=(3, 3), textcoords="offset points")
+        axis.annotate(text, (a, b), fontsize=6, xytext=(3, -8), textcoords="offset points")
 
 
 def save(figure, path):
@@ -55,13 +55,14 @@ def packing_picture(rows, path):
         axis = panels[0, column]
         for precision, (colour, style) in QUIET.items():
             part = [r for r in chosen(rows, "time step", kind) if r["precision"] == precision]
-            panel(axis, part, f"time step: {kind}", "error", style=style, colour=colour, name=precision)
+            panel(axis, part, f"time step: {kind}", "error", precision == "double", style, colour, precision)
         if axis.has_data():
             axis.legend(fontsize=7)
     for kind, colour in (("P, mean", "C2"), ("mu, mean", "C3")):
         for precision, (_, style) in QUIET.items():
             part = [r for r in chosen(rows, "shear rate", kind) if r["precision"] == precision]
-            panel(panels[1, 1], part, "shear rate", "difference from the slowest", style=style, colour=colour, name=f"{kind}, {precision}")
+            is_first = precision == "double" and kind.startswith("P")
+            panel(panels[1, 1], part, "shear rate", "difference from the slowest", is_first, style, colour, f"{kind}, {precision}")
     part = chosen(rows, "skin", "cost")
     panels[1, 0].plot([r["setting"] for r in part], [r["seconds"] for r in part], "o-", ms=4, lw=1)
     panels[1, 0].set(title="skin: cost alone", xlabel="skin (d)", ylabel="processor seconds", ylim=(0, None))
@@ -87,7 +88,7 @@ def specimen_picture(rows, path):
         panel(panels[1, 0], chosen(rows, "cylinder, nodes", quantity), "cylinder: nodes", "against its network", colour=colour, name=quantity)
         for alpha, style in ((0, "o-"), (2, "s--")):
             panel(panels[1, 1], chosen(rows, "nodes of the box", f"{quantity}, alpha {alpha}"), "periodic box: nodes (seconds a box)",
-                  "against the installed table", style=style, colour=colour, name=f"{quantity}, alpha {alpha}")
+                  "against the installed table", (quantity, alpha) == ("E", 2), style, colour, f"{quantity}, alpha {alpha}")
     for axis in panels.flat:
         if axis.has_data():
             axis.legend(fontsize=7)

@@ -11,7 +11,7 @@ namespace boba {
 /// Hands snapshots to a writer of frames: at the ends of stages and whenever the schedule says so, each step once.
 class FrameObserver : public Observer {
 public:
-  using Write = std::function<void(const Snapshot&)>;
+  using Write = std::function<void(Snapshot&&)>;
   /// `last_step`: of the frame that was written last, for a run that goes on; -1 for a new one.
   FrameObserver(const Schedule& schedule, Simulation::Parts parts, std::int64_t last_step, Write write)
       : schedule_(schedule), parts_(parts), last_step_(last_step), write_(std::move(write)) {}

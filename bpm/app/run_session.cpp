@@ -68,7 +68,10 @@ public:
     checkpoints_ = std::make_unique<CheckpointObserver>(
         setup_.folder.checkpoints(), constant_part(setup_, simulation_), plan.checkpoint_seconds,
         Schedule({std::nullopt, plan.checkpoint_time}, simulation_.strain(), simulation_.time()),
-        [this](CheckpointData& data) { store_writers(data, writers_); });
+        [this](CheckpointData& data) {
+          writers_.wait(); // what a checkpoint points back to is on disk
+          store_writers(data, writers_);
+        });
   }
 
   ExitCode run() {
@@ -119,7 +122,7 @@ private:
       observers.push_back(frames.get());
     }
     observers.push_back(&progress_);
-    observers.push_back(checkpoints_.get()); // last: what it points back to is on disk
+    observers.push_back(checkpoints_.get()); // last: it points back to what the others write
     if (!setup_.restart) {
       write_checkpoint(); // so that a run killed early can be resumed too
     }

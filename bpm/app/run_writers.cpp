@@ -46,7 +46,7 @@ TrajectoryWriter trajectory_writer(const RunSetup& setup, const Simulation& simu
   return {path, topology, origin, options, mode};
 }
 
-FrameObserver::Write dump_writer(const RunSetup& setup, const std::shared_ptr<const Topology>& topology,
+WriteBehind::Write dump_writer(const RunSetup& setup, const std::shared_ptr<const Topology>& topology,
                                  std::int64_t last_step) {
   const std::filesystem::path path = setup.folder.dump();
   if (setup.restart) {
@@ -57,7 +57,7 @@ FrameObserver::Write dump_writer(const RunSetup& setup, const std::shared_ptr<co
   return [writer, topology](const Snapshot& snapshot) { writer->write(*topology, snapshot); };
 }
 
-FrameObserver::Write vtk_writer(const RunSetup& setup, const std::shared_ptr<const Topology>& topology,
+WriteBehind::Write vtk_writer(const RunSetup& setup, const std::shared_ptr<const Topology>& topology,
                                 std::int64_t last_step) {
   const std::filesystem::path path = setup.folder.vtk() / "packing.pvd";
   std::filesystem::create_directories(setup.folder.vtk());
@@ -118,6 +118,12 @@ std::vector<std::int64_t> RunWriters::last_steps() const {
   return steps;
 }
 
+void RunWriters::wait() const {
+  for (const auto& writer : behind) {
+    writer->wait();
+  }
+}
+
 RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, const PackingNumbers& numbers) {
   RunWriters writers;
   const OutputPlan& plan = setup.scene.output;
@@ -151,11 +157,15 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
   }
   if (writes) {
     const auto topology = std::make_shared<const Topology>(simulation.packing().topology(false));
+    const auto add_behind = [&](const FrameOutput& output, WriteBehind::Write write) {
+      writers.behind.push_back(std::make_unique<WriteBehind>(std::move(write)));
+      add(output, [behind = writers.behind.back().get()](Snapshot&& frame) { behind->add(std::move(frame)); });
+    };
     if (plan.dump) {
-      add(*plan.dump, dump_writer(setup, topology, last_step()));
+      add_behind(*plan.dump, dump_writer(setup, topology, last_step()));
     }
     if (plan.vtk) {
-      add(*plan.vtk, vtk_writer(setup, topology, last_step()));
+      add_behind(*plan.vtk, vtk_writer(setup, topology, last_step()));
     }
   } else {
     follow_writers(writers, setup, schedule);

@@ -5,6 +5,7 @@
 #include "bpm/app/measure/measure_tables.h"
 #include "bpm/app/run_setup.h"
 #include "bpm/app/table_observer.h"
+#include "bpm/app/write_behind.h"
 #include "bpm/io/shared_trajectory.h"
 
 #include <memory>
@@ -15,6 +16,7 @@ namespace boba {
 /// The files a scene asks for, as observers. New ones for a new run; a run that goes on cuts them at its checkpoint.
 struct RunWriters {
   std::unique_ptr<TableObserver> table;
+  std::vector<std::unique_ptr<WriteBehind>> behind;   ///< what writes dump and VTK; on rank 0
   std::vector<std::unique_ptr<FrameObserver>> frames; ///< trajectory, dump, VTK, measures
 
   /// On all ranks. Closed at the end of a run, where a failure is still told; null when not asked for.
@@ -22,6 +24,8 @@ struct RunWriters {
   /// The measures of motion, which look back to the frame before; null when not asked for.
   std::shared_ptr<const MeasureTables> motion;
 
+  /// Returns when all frames handed out are in their files. \throws std::runtime_error when one could not be written.
+  void wait() const;
   /// Step of the last row and of each writer's last frame, as RunSetup::Restart keeps them.
   std::vector<std::int64_t> last_steps() const;
 };

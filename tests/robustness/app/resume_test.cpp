@@ -86,6 +86,7 @@ TEST(Resume, AfterBeingKilled) {
   const TemporaryFolder folder;
   folder.file("scene.toml", small_scene);
   const std::vector<std::string> often{"--quiet", "--set", "output.checkpoint.every_time=15", "--set", "stage.2.strain=1.5",
+                                       "--set", "output.dump.every_strain=0.05", "--set", "output.vtk.every_strain=0.1",
                                        "--set", "measure=[{what = \"motion, order\", every_strain = 0.05}]"};
   run_alone(folder, often);
   const char* asked = std::getenv("BOBA_KILLS");

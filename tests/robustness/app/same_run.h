@@ -7,10 +7,29 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <vector>
+
 namespace boba::test {
+
+/// Two runs ended with the same text dumps and VTK files, or both without.
+inline void expect_same_pictures(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::vector<std::filesystem::path> files = {"dump.lammpstrj"};
+  for (const std::filesystem::path& run : {a, b}) {
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(run / "vtk", none)) {
+      files.push_back("vtk" / entry.path().filename());
+    }
+  }
+  for (const std::filesystem::path& file : files) {
+    ASSERT_EQ(std::filesystem::exists(a / file), std::filesystem::exists(b / file)) << file;
+    EXPECT_TRUE(!std::filesystem::exists(a / file) || content_of(a / file) == content_of(b / file)) << file << " differ";
+  }
+}
 
 /// Two runs ended with the same table, frames and state, bit for bit.
 inline void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b) {
+  expect_same_pictures(a, b);
   EXPECT_TRUE(table_without_speed(a / "table.csv") == table_without_speed(b / "table.csv")) << "tables differ";
   const TrajectoryReader first(a / "trajectory.h5"), second(b / "trajectory.h5");
   ASSERT_EQ(first.steps(), second.steps());

@@ -40,6 +40,10 @@ const std::vector<std::string> settings = {"--quiet",
                                            "--set",
                                            "output.trajectory.every_strain=0.01",
                                            "--set",
+                                           "output.dump.every_strain=0.01",
+                                           "--set",
+                                           "output.vtk.every_strain=0.02",
+                                           "--set",
                                            "measure=[{what = \"stress\", every_strain = 0.01}]"};
 
 std::vector<std::string> command(const std::string& output) {
