@@ -95,19 +95,23 @@ ForceField::BondPass<Coordinate, Real> ForceField::bond_pass(int b, LaneState& s
 template <class Coordinate, class Real>
 void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>& lanes, const Box& box,
                           const Evaluation& what) {
-  // Scratch of one thread for all blocks: it stays in the cache, and memory is not asked for forces at all.
+  // Scratch of one thread for all blocks: it stays in the cache, and memory is not asked for forces at all. Zero but in
+  // here.
   thread_local AlignedArray<Real> volume, force;
   BondPass<Coordinate, Real> pass = bond_pass(b, state, lanes, box, what);
   const Block& block = *pass.block;
   const auto n_lane_nodes = static_cast<std::size_t>(block.n_nodes) * block.n_lanes;
-  if (block.many_body) {
-    volume.assign(n_lane_nodes, 0);
+  if (block.many_body && volume.size() < n_lane_nodes) {
+    volume.resize(n_lane_nodes, 0);
   }
-  force.assign(3 * n_lane_nodes, 0);
+  if (force.size() < 3 * n_lane_nodes) {
+    force.resize(3 * n_lane_nodes, 0);
+  }
   add_others(b, state, lanes, force.data(), what);
   pass.arrays.f = force.data();
   pass.arrays.volume = volume.data();
   pass.arrays.residual_shift = pass.residual_shift.data();
+  pass.arrays.leaves_zeros = !what.keep_forces;
   ImageBondSums image_sums{};
   if constexpr (std::is_same_v<Real, double>) { // the constructor refuses them in mixed precision
     if (!pass.network->image_bonds().empty()) {
@@ -124,7 +128,10 @@ void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>&
             volumes_done, pass.sums[s]);
   }
   if (what.keep_forces) {
-    std::copy(force.begin(), force.end(), lanes.f.begin() + block.offset);
+    const auto forces = std::span(force).first(3 * n_lane_nodes);
+    std::copy(forces.begin(), forces.end(), lanes.f.begin() + block.offset);
+    std::fill(forces.begin(), forces.end(), Real{0});
+    std::fill(volume.begin(), volume.end(), Real{0});
   }
   if (what.virial != Virial::none) {
     sum_up(block, pass.sums, image_sums);

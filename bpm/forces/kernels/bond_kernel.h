@@ -38,10 +38,10 @@ template <class V, class T> inline void store3(T* to, std::int64_t node, std::in
 template <class V> inline Triple<V> difference(const Triple<V>& a, const Triple<V>& b) {
   return {{a.c[0] - b.c[0], a.c[1] - b.c[1], a.c[2] - b.c[2]}};
 }
+/// In units of the coordinates: who needs d multiplies what comes out, not every component.
 template <class S, class P = typename S::P, class V = typename S::V>
-inline Triple<V> separation(const Triple<P>& a, const Triple<P>& b, V quantum) {
-  return {{S::distance(a.c[0], b.c[0], quantum), S::distance(a.c[1], b.c[1], quantum),
-           S::distance(a.c[2], b.c[2], quantum)}};
+inline Triple<V> separation(const Triple<P>& a, const Triple<P>& b) {
+  return {{S::distance(a.c[0], b.c[0]), S::distance(a.c[1], b.c[1]), S::distance(a.c[2], b.c[2])}};
 }
 template <class V> inline V dot(const Triple<V>& a, const Triple<V>& b) {
   return multiply_add(a.c[2], b.c[2], multiply_add(a.c[1], b.c[1], a.c[0] * b.c[0]));
@@ -54,27 +54,27 @@ template <class V> inline V cube_of(const Triple<V>& d) {
 }
 
 /// Adds r^3 of the bonds of the nodes [begin, end) to the volumes of both of their nodes, but not to nodes from own_end
-/// on. Pointers start at the first lane.
+/// on; that of a node is then complete, and becomes d^3. Pointers start at the first lane.
 template <class S, bool shared, class Coordinate = typename S::Coordinate, class Real = typename S::Real>
 void node_volumes(const NetworkOf<Real>& network, const Coordinate* x, Real* volume, double quantum, std::int64_t begin,
                   std::int64_t end, std::int64_t own_end) {
   using V = typename S::V;
   using P = typename S::P;
   constexpr std::int64_t stride = S::stride;
-  const V q = splat<V>(quantum);
+  const V q3 = splat<V>(quantum * quantum * quantum);
   for (std::int64_t i = begin; i < end; ++i) {
     const Triple<P> xi = load3<P>(x, i, stride);
     V sum = load<V>(volume + i * stride);
     for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
       const std::int64_t j = network.bonds[b].other;
-      const Triple<V> d = separation<S>(xi, load3<P>(x, j, stride), q);
+      const Triple<V> d = separation<S>(xi, load3<P>(x, j, stride));
       const V cube = cube_of(d);
       sum += cube;
       if (!shared || j < own_end) {
         store<V>(volume + j * stride, load<V>(volume + j * stride) + cube);
       }
     }
-    store<V>(volume + i * stride, sum);
+    store<V>(volume + i * stride, S::in_diameters(sum, q3));
   }
 }
 
@@ -109,8 +109,7 @@ void volumes_of_nodes(const NetworkOf<Real>& network, const BlockArraysOf<Coordi
     Real* volume = a.volume + lane;
     for_each_bond_from_before(network, range, [&](std::int64_t i, std::int64_t b) {
       const std::int64_t j = network.bonds[b].other;
-      const Triple<V> d = separation<S>(load3<typename S::P>(x, i, S::stride), load3<typename S::P>(x, j, S::stride),
-                                        splat<V>(a.quantum));
+      const Triple<V> d = separation<S>(load3<typename S::P>(x, i, S::stride), load3<typename S::P>(x, j, S::stride));
       const V cube = cube_of(d);
       store<V>(volume + j * S::stride, load<V>(volume + j * S::stride) + cube);
     });
@@ -156,12 +155,13 @@ template <class D> void store_tensor(const Tensor<D>& sum, double (*to)[boba::ma
   }
 }
 
-/// Force over distance of one bond; d and r2 are its separation.
-template <bool many_body, bool damped, class V, class Real>
-inline V bond_scale(const BondRecordOf<Real>& bond, const Triple<V>& d, V r2, const Triple<V>& vi, const Triple<V>& vj,
-                    V volumes, V alpha, Real k, Real gamma) {
+/// Force over distance of one bond; d and r2 are its separation in units of the coordinates, as is the distance of the
+/// result.
+template <class S, bool many_body, bool damped, class V = typename S::V, class Real = typename S::Real>
+inline V bond_scale(const BondRecordOf<Real>& bond, const Triple<V>& d, V r2, V quantum, const Triple<V>& vi,
+                    const Triple<V>& vj, V volumes, V alpha, Real k, Real gamma) {
   const V inverse_r = inverse_sqrt(r2);
-  const V r = r2 * inverse_r;
+  const V r = S::in_diameters(r2 * inverse_r, quantum);
   V normal_velocity{};
   if constexpr (damped) {
     normal_velocity = dot(d, difference(vi, vj)) * inverse_r;
@@ -229,7 +229,7 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
     for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
       const BondRecordOf<Real>& bond = network.bonds[b];
       const std::int64_t j = bond.other;
-      const Triple<V> d = separation<S>(xi, load3<P>(x, j, stride), q);
+      const Triple<V> d = separation<S>(xi, load3<P>(x, j, stride));
       const V r2 = dot(d, d);
       Triple<V> vj{};
       if constexpr (damped) {
@@ -240,7 +240,7 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
       if constexpr (many_body) {
         volumes = volume_i + load<V>(volume + j * stride);
       }
-      const V s = bond_scale<many_body, damped>(bond, d, r2, vi, vj, volumes, alpha, k, gamma);
+      const V s = bond_scale<S, many_body, damped>(bond, d, r2, q, vi, vj, volumes, alpha, k, gamma);
       for (int c = 0; c < 3; ++c) {
         fi.c[c] = multiply_add(s, d.c[c], fi.c[c]);
       }
@@ -249,8 +249,14 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
       }
       add_dyad<virial>(node_stress, s, d, r2);
     }
+    for (V& sum : node_stress.c) {
+      sum = S::in_diameters(sum, q);
+    }
     add_to<virial>(stress, node_stress);
-    store3<V>(f, i, stride, fi);
+    store3<V>(f, i, stride, a.leaves_zeros ? Triple<V>{} : fi);
+    if (many_body && a.leaves_zeros) {
+      store<V>(volume + i * stride, V{});
+    }
     Triple<V> kicked, full;
     for (int c = 0; c < 3; ++c) {
       full.c[c] = multiply_add(half_kick, fi.c[c], vi.c[c]);
@@ -318,7 +324,7 @@ void lanes_from_before(const NetworkOf<Real>& network, const BlockArraysOf<Coord
   Real* f = a.f + lane;
   for_each_bond_from_before(network, range, [&](std::int64_t i, std::int64_t b) {
     const std::int64_t j = network.bonds[b].other;
-    const Triple<V> d = separation<S>(load3<P>(a.x + lane, i, stride), load3<P>(a.x + lane, j, stride), q);
+    const Triple<V> d = separation<S>(load3<P>(a.x + lane, i, stride), load3<P>(a.x + lane, j, stride));
     Triple<V> vi{}, vj{};
     if constexpr (damped) {
       vi = load3<V>(a.v + lane, i, stride);
@@ -328,7 +334,7 @@ void lanes_from_before(const NetworkOf<Real>& network, const BlockArraysOf<Coord
     if constexpr (many_body) {
       volumes = load<V>(a.volume + lane + i * stride) + load<V>(a.volume + lane + j * stride);
     }
-    const V s = bond_scale<many_body, damped>(network.bonds[b], d, dot(d, d), vi, vj, volumes, alpha, k, gamma);
+    const V s = bond_scale<S, many_body, damped>(network.bonds[b], d, dot(d, d), q, vi, vj, volumes, alpha, k, gamma);
     add_to_second(f, j, stride, s, d);
   });
 }

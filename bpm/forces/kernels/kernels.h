@@ -42,8 +42,10 @@ template <class Coordinate, class Real> struct BlockArraysOf {
   Real *v, *f, *volume;
   const double* alpha;          ///< per lane
   const double* residual_shift; ///< per lane, see BondParameters
-  double quantum;               ///< d; not read when coordinates are doubles
+  double quantum;               ///< d, a power of two; not read when coordinates are doubles
   int n_lanes;
+  /// Forces and volumes of a node are zero when nobody needs them any more, ready for the next step; else they stay.
+  bool leaves_zeros = false;
   /// Velocities of the nodes from NodeRange::own_end on, as they were before another thread kicked them; null: all
   /// nodes are the call's own.
   const Real* v_beyond = nullptr;

@@ -319,12 +319,20 @@ template <class V_, class Coordinate_, int stride_> struct Storage {
   static constexpr bool fixed_point = std::is_same_v<Coordinate, std::int32_t>;
   using P = std::conditional_t<fixed_point, Vector<std::int32_t, lanes_of<V>>, V>;
 
-  /// a - b, d. Integers are subtracted exactly before they become floats.
-  static V distance(P a, P b, V quantum) {
+  /// a - b in units of the coordinates: quanta or d. Integers are subtracted exactly before they become floats.
+  static V distance(P a, P b) {
     if constexpr (fixed_point) {
-      return converted<V>(a - b) * quantum;
+      return converted<V>(a - b);
     } else {
       return a - b;
+    }
+  }
+  /// A length in units of the coordinates, in d. The quantum is a power of two: nothing is rounded.
+  static V in_diameters(V length, V quantum) {
+    if constexpr (fixed_point) {
+      return length * quantum;
+    } else {
+      return length;
     }
   }
   /// The coordinate itself, d.
