@@ -55,10 +55,15 @@ void ContactList::layout_changed() {
   invalidate();
 }
 
+/// Distance that two nodes keep at least which were `distance` apart, once the cell has been mapped and each node has
+/// moved by `crept` beyond that.
+double ContactList::kept_distance(double distance, const Matrix3& cell, double crept) {
+  return (1.0 - (cell - Matrix3::Identity()).norm()) * distance - 2.0 * crept;
+}
+
 bool ContactList::update(const LaneState& state, const Box& box, const Networks& network_of_grain) {
-  const double stretch = 1.0 - (cell_since_tracking_ - Matrix3::Identity()).norm();
-  if (built_ && stretch * guaranteed_ - 2.0 * crept_ >= diameter_ &&
-      stretch * followed_guaranteed_ - 2.0 * crept_followed_ >= diameter_) {
+  if (built_ && kept_distance(guaranteed_, cell_since_tracking_, crept_) >= diameter_ &&
+      kept_distance(followed_guaranteed_, cell_since_tracking_, crept_followed_) >= diameter_) {
     return false;
   }
   track(state);
@@ -124,7 +129,10 @@ void ContactList::note_motion(const Matrix3& cell_map, double farthest, double c
   if (built_) {
     cell_since_tracking_ = cell_map * cell_since_tracking_;
     cell_since_neighbours_ = cell_map * cell_since_neighbours_;
-    const double stretch = 1.0 + (cell_map - Matrix3::Identity()).norm();
+    cell_since_near_ = cell_map * cell_since_near_;
+    const double change = (cell_map - Matrix3::Identity()).norm(), stretch = 1.0 + change;
+    last_approach_ = change * diameter_ + 2.0 * common;
+    crept_near_ = crept_near_ * stretch + common;
     crept_ = crept_ * stretch + common;
     crept_followed_ = crept_followed_ * stretch + farthest;
   }
@@ -339,6 +347,17 @@ std::vector<std::int32_t> ContactList::nodes_in(int g, std::vector<kernels::Node
     }
   }
   return nodes;
+}
+
+bool ContactList::near_holds() const {
+  return kept_distance(near_reach_, cell_since_near_, crept_near_) >= diameter_;
+}
+
+double ContactList::begin_near() {
+  near_reach_ = std::min(guaranteed_, diameter_ + std::max(least_near_margin, near_steps * last_approach_));
+  crept_near_ = 0.0;
+  cell_since_near_ = Matrix3::Identity();
+  return near_reach_;
 }
 
 void ContactList::list_near() {

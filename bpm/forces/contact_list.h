@@ -59,11 +59,14 @@ public:
   std::span<const ContactSide> sides(int grain) const { return sides_[grain]; }
   /// Nodes of a grain that are in any candidate, ascending.
   std::span<const std::int32_t> listed(int grain) const { return grains_[grain].listed; }
-  /// Distance above which no two nodes can come to touch before the next update, listed or not, d.
-  double safe_distance() const { return guaranteed_; }
+  /// True as long as no candidate can have come to touch that was not near when near candidates were last found.
+  bool near_holds() const;
+  /// Distance below which a candidate is near from now on, d: chosen so that it holds for some steps of the present
+  /// motion. The candidates of followed nodes are near whatever their distance.
+  double begin_near();
   /// Nodes of a grain that are in any pair's near candidates, ascending; known after list_near.
   std::span<const std::int32_t> near(int grain) const { return grains_[grain].near; }
-  /// Lists the nodes of the near candidates, once they have been found after an update.
+  /// Lists the nodes of the near candidates, once they have been found.
   void list_near();
 
   /// Grains of other ranks that may touch ours, ascending.
@@ -113,10 +116,13 @@ private:
   double bounds_margin_ = 0.5;
   /// Margin of the list of neighbouring grains, d.
   double neighbour_margin_ = 1.0;
+  /// Steps for which near candidates are to hold, and what they are given at least, d.
+  static constexpr double near_steps = 24.0, least_near_margin = 0.02;
   /// Most that a frame may shorten before all is noted anew.
   static constexpr double largest_shortening = 0.05;
 
   // contact_list.cpp: pairs
+  static double kept_distance(double distance, const Matrix3& cell, double crept);
   void find_neighbours(const Box& box);
   double neighbour_guarantee(const Box& box) const;
   double radius_in(const GrainFrame& frame) const;
@@ -168,6 +174,10 @@ private:
   double crept_ = 0.0;          ///< bound on a node's motion since then beyond the cell's, d, but for followed ones
   double crept_followed_ = 0.0; ///< the same of any node
   double brisk_motion_;         ///< d a step
+  /// The same for near candidates: their reach, the motion of the cell and of nodes since they were found, and how far two
+  /// nodes that touch may have approached each other in the last step, d.
+  double near_reach_ = 0.0, crept_near_ = 0.0, last_approach_ = 0.0;
+  Matrix3 cell_since_near_ = Matrix3::Identity();
   AlignedArray<float> place_;   ///< X, lane layout, d
   std::vector<TrackedGrain> grains_;
   std::vector<ContactPair> pairs_; ///< sorted by a, b, image

@@ -21,7 +21,7 @@ struct ContactPair {
   ImageVector image;
   std::vector<kernels::NodePair> candidates;
   std::vector<kernels::NodePair> followed; ///< those of nodes that are followed by themselves, sorted
-  std::vector<kernels::NodePair> near;     ///< those that may touch before the next update of the list
+  std::vector<kernels::NodePair> near;     ///< those that may touch in the steps to come
 
   bool searched = false;
   bool changed = true;         ///< since the grains last listed their nodes

@@ -18,10 +18,9 @@ kernels::ContactCandidates ForceField::seen_by_kernels(const ContactPair& pair,
           nodes_of_[pair.b], {shift[0], shift[1], shift[2]},          {velocity[0], velocity[1], velocity[2]}};
 }
 
-void ForceField::find_near(ContactPair& pair, const Box& box) {
-  const double safe = contact_list_.safe_distance();
+void ForceField::find_near(ContactPair& pair, const Box& box, double reach) {
   pair.near.resize(pair.candidates.size() + 1);
-  pair.near.resize(table_.near_candidates(seen_by_kernels(pair, pair.candidates, box, Matrix3::Zero()), safe * safe,
+  pair.near.resize(table_.near_candidates(seen_by_kernels(pair, pair.candidates, box, Matrix3::Zero()), reach * reach,
                                           pair.near.data()));
   if (!std::includes(pair.near.begin(), pair.near.end(), pair.followed.begin(), pair.followed.end())) {
     thread_local std::vector<kernels::NodePair> all;
@@ -59,7 +58,7 @@ void ForceField::collect(int grain, std::span<const std::int32_t> nodes, const L
 
 /// Brings the contact list and the contact nodes up to the present state.
 void ForceField::prepare_contacts(const LaneState& state, const Box& box) {
-  const bool changed = contact_list_.update(state, box, network_of_grain_);
+  const bool changed = contact_list_.update(state, box, network_of_grain_) || !contact_list_.near_holds();
   if (collected_ && !changed) {
     return;
   }
@@ -90,16 +89,17 @@ void ForceField::know_nodes() {
   }
 }
 
-/// Finds the candidates that may touch before the next update; the halo is then of their nodes alone.
+/// Finds the candidates that may touch in the steps to come; the halo is then of their nodes alone.
 void ForceField::list_near(const Box& box) {
   if (distribution_.many()) {
     halo_.begin(contact_nodes_.get());
     halo_.end();
   }
   std::vector<ContactPair>& pairs = contact_list_.pairs();
+  const double reach = contact_list_.begin_near();
 #pragma omp parallel for schedule(dynamic, 4)
   for (int p = 0; p < static_cast<int>(pairs.size()); ++p) {
-    find_near(pairs[p], box);
+    find_near(pairs[p], box, reach);
   }
   contact_list_.list_near();
   if (distribution_.many()) {

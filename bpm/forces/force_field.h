@@ -128,8 +128,8 @@ private:
   template <class Real> void walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums);
   kernels::ContactCandidates seen_by_kernels(const ContactPair& pair, const std::vector<kernels::NodePair>& pairs,
                                              const Box& box, const Matrix3& residual_rate) const;
-  /// Finds the candidates that may touch before the next update of the list.
-  void find_near(ContactPair& pair, const Box& box);
+  /// Finds the candidates closer than the reach, and those of followed nodes.
+  void find_near(ContactPair& pair, const Box& box, double reach);
   void contacts_between(ContactPair& pair, const Box& box, const Evaluation& what);
   template <class Coordinate, class Real>
   void add_contacts(int grain, const kernels::LaneKernels<Coordinate, Real>& lane_kernels, Real* f, bool with_sums);
