@@ -252,15 +252,15 @@ def figure_s2(results, folder):
 
 def figure_s3(results, folder):
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8))
-    most = {row["nodes"]: max(r["grains"] for r in results.plan.values() if r["nodes"] == row["nodes"])
-            for row in results.plan.values()}
     for alpha, colour in COLOURS.items():
         for nodes, remap, style in (("300", "positions", "o-"), ("300", "velocities", "x"), ("5137", "positions", "s")):
             points = {}
-            for name in results.runs(scene="shear", alpha=alpha, nodes=nodes, remap=remap):
-                grains = results.plan[name]["grains"]
-                for row in results.rows("early", name) if grains == most[nodes] else []:
-                    points.setdefault(results.plan[name]["rate"], []).append(row)
+            names = [n for n in results.runs(scene="shear", alpha=alpha, nodes=nodes, remap=remap) if results.rows("early", n)]
+            for name in names:  # at each rate those with the most grains
+                rate = results.plan[name]["rate"]
+                most = max((results.plan[n]["grains"] for n in names if results.plan[n]["rate"] == rate), key=int)
+                if results.plan[name]["grains"] == most and most != "27":
+                    points.setdefault(rate, []).extend(results.rows("early", name))
             curve = []
             for rows in points.values():
                 number = np.mean([float(row["inertial_number"]) for row in rows])

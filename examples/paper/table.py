@@ -80,13 +80,15 @@ def compaction_rows(table, results):
 
 def early_rows(table, results):
     for alpha, published, mu in (("-0.8", 0.87, 0.17), ("12", 0.85, 0.10)):
-        for nodes, why in ((300, "resolution (see above) and rate"), (5137, "16 grains, and the rate")):
+        for nodes in (300, 5137):
             slowest = [n for n in results.runs(scene="shear", alpha=alpha, nodes=nodes, remap="positions")
                        if results.rows("early", n)]
-            slowest = sorted(slowest, key=lambda n: float(results.plan[n]["rate"]))
-            slowest = [n for n in slowest if results.plan[n]["rate"] == results.plan[slowest[0]]["rate"]]
+            slowest = sorted(slowest, key=lambda n: (float(results.plan[n]["rate"]), -int(results.plan[n]["grains"])))
+            slowest = [n for n in slowest if all(results.plan[n][key] == results.plan[slowest[0]][key]
+                                                 for key in ("rate", "grains"))]
             rows = [results.rows("early", n)[0] for n in slowest]
-            rate = results.plan[slowest[0]]["rate"] if slowest else "-"
+            rate, grains = (results.plan[slowest[0]][key] if slowest else "-" for key in ("rate", "grains"))
+            why = "resolution (see above) and rate" if nodes == 300 else f"{grains} grains, and the rate"
             number = f"{float(rows[0]['inertial_number']):.2g}" if rows else "-"
             nu = f"nu = {POISSON[alpha]:g}, {nodes} nodes"
             table.number(f"phi before shear, P~ = 0.1, {nu}", published,
@@ -118,7 +120,7 @@ def order_rows(table, results):
         for grains in sorted({r["grains"] for r in results.plan.values() if r["nodes"] == "300"}, key=int)[::-1]:
             names = [n for n in results.runs(scene="shear", alpha=alpha, nodes=300, grains=grains, rate="2.048e-3")
                      if results.reached(n) > 10]
-            if not names and grains == "27":
+            if not results.runs(scene="shear", alpha=alpha, nodes=300, grains=grains, rate="2.048e-3"):
                 continue
             ordered = [n for n in names if late_order(results, n) > 0.5]
             detail = "; ".join(f"to strain {results.reached(n):.0f}: " + (
@@ -167,6 +169,20 @@ def shape_rows(table, results):
                            "robust rule on cut grains: rough hulls have facets of their own")
 
 
+def light_rows(table, results):
+    for alpha, nu in POISSON.items():
+        names = [n for n in results.runs(scene="light", alpha=alpha) if results.rows("early", n)]
+        rows = [results.rows("early", n)[0] for n in names]
+        if not rows:
+            continue
+        number, reached = float(rows[0]["inertial_number"]), rows[0]["to_strain"]
+        why = f"I = {number:.2g}, to strain {reached}; rough grains of 300 nodes have friction"
+        what = f"P~ = 1e-4, nu = {nu:g}, 300 nodes"
+        table.number(f"nearly rigid grains, {what}: mu", 0.1, [float(r["mu"]) for r in rows], float(rows[0]["mu_error"]), why)
+        table.number("the same: phi", 0.64, [float(r["phi"]) for r in rows if r["phi"]], float(rows[0]["phi_error"] or "nan"), why)
+        table.text("the same: crystal", "none", f"share {late_order(results, names[0]):.2f} at the end", "far shorter")
+
+
 def rigid_rows(table, results):
     names = sorted((n for n in results.runs(scene="spheres") if results.rows("early", n)),
                    key=lambda n: float(results.plan[n]["rate"]))
@@ -199,7 +215,7 @@ def total_rows(results):
 
 def main(results_folder, plan, page):
     results, table = Results(results_folder, plan), Table()
-    for add in (compaction_rows, early_rows, order_rows, shape_rows, rigid_rows):
+    for add in (compaction_rows, early_rows, order_rows, shape_rows, light_rows, rigid_rows):
         add(table, results)
     block = "\n".join([BEGIN, "", total_rows(results), "", *table.lines, "", END])
     page = pathlib.Path(page)
