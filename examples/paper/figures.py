@@ -44,9 +44,9 @@ class Results:
         return float(rows[0]["strain"]) if rows else 0.0
 
     def longest(self, alpha, nodes="300"):
-        """Of one alpha's runs with the most grains the one with the largest strain; None when there is none."""
+        """Of one alpha's runs the one with the largest strain, of several the one with the most grains; None when there is none."""
         names = [name for name in self.runs(scene="shear", alpha=alpha, nodes=nodes) if self.rows("structure", name)]
-        return max(names, key=lambda name: (int(self.plan[name]["grains"]), self.reached(name)), default=None)
+        return max(names, key=lambda name: (round(self.reached(name)), int(self.plan[name]["grains"])), default=None)
 
 
 def label(alpha):
@@ -253,14 +253,13 @@ def figure_s2(results, folder):
 def figure_s3(results, folder):
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8))
     for alpha, colour in COLOURS.items():
-        for nodes, remap, style in (("300", "positions", "o-"), ("300", "velocities", "x"), ("5137", "positions", "s")):
+        for nodes, grains, remap, style in (("300", "64", "positions", "o-"), ("300", "64", "velocities", "x"),
+                                            ("300", "256", "positions", "D"), ("5137", "16", "positions", "s"),
+                                            ("5137", "64", "positions", "P")):
             points = {}
-            names = [n for n in results.runs(scene="shear", alpha=alpha, nodes=nodes, remap=remap) if results.rows("early", n)]
-            for name in names:  # at each rate those with the most grains
-                rate = results.plan[name]["rate"]
-                most = max((results.plan[n]["grains"] for n in names if results.plan[n]["rate"] == rate), key=int)
-                if results.plan[name]["grains"] == most and most != "27":
-                    points.setdefault(rate, []).extend(results.rows("early", name))
+            for name in results.runs(scene="shear", alpha=alpha, nodes=nodes, grains=grains, remap=remap):
+                for row in results.rows("early", name):
+                    points.setdefault(results.plan[name]["rate"], []).append(row)
             curve = []
             for rows in points.values():
                 number = np.mean([float(row["inertial_number"]) for row in rows])
@@ -275,7 +274,7 @@ def figure_s3(results, folder):
                 right.plot(number, phi, style, color=colour, ms=4, lw=1)
     left.set_ylabel(r"$\mu$ (1 < strain < 5)")
     right.set_ylabel(r"$\phi$")
-    left.set_title("circles: 300 nodes; crosses: remap velocities; squares: 5137 nodes", fontsize=8, loc="left")
+    left.set_title("300 nodes: circles 64 grains (crosses: remap velocities), diamonds 256;\n5137 nodes: squares 16 grains, plus 64", fontsize=8, loc="left")
     for axes in (left, right):
         axes.set_xscale("log")
         axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))

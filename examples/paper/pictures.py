@@ -22,18 +22,18 @@ from figures import POISSON
 
 
 def longest(plan, out, alpha):
-    """The run that was sheared farthest among those with the most grains of 300 nodes."""
+    """The run of grains of 300 nodes that was sheared farthest."""
     rows = [row for row in csv.DictReader(open(plan)) if row["scene"] == "shear" and row["alpha"] == alpha and
             row["nodes"] == "300" and (pathlib.Path(out) / row["name"] / "trajectory.h5").exists()]
     reached = {row["name"]: float(boba.open(f"{out}/{row['name']}").table["strain"][-1]) for row in rows}
-    best = max(rows, key=lambda row: (int(row["grains"]), reached[row["name"]]), default=None)
+    best = max(rows, key=lambda row: (round(reached[row["name"]]), int(row["grains"])), default=None)
     return best and boba.open(f"{out}/{best['name']}")
 
 
 def early_run(plan, out, alpha):
     """A run at strain 3.2: of the published resolution where there is one."""
     rows = [row for row in csv.DictReader(open(plan)) if row["scene"] == "shear" and row["alpha"] == alpha]
-    for row in sorted(rows, key=lambda row: -int(row["nodes"])):
+    for row in sorted(rows, key=lambda row: (-int(row["nodes"]), -int(row["grains"]))):
         folder = pathlib.Path(out) / row["name"]
         if (folder / "trajectory.h5").exists() and boba.open(folder).table["strain"][-1] >= 3.2:
             return boba.open(folder)

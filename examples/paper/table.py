@@ -100,6 +100,20 @@ def early_rows(table, results):
                          f"rate {rate} (I = {number}) instead of 1.6e-5: mu grows with I")
 
 
+def size_rows(table, results):
+    for alpha in ("-0.8", "12"):
+        found = []
+        for grains in ("64", "256"):
+            names = [n for n in results.runs(scene="shear", alpha=alpha, nodes=300, grains=grains, rate="1.024e-3", remap="positions")
+                     if results.rows("early", n)]
+            rows = [results.rows("early", n)[0] for n in names]
+            if rows:
+                mu = np.array([float(row["mu"]) for row in rows])
+                error = np.std(mu, ddof=1) / np.sqrt(len(mu)) if len(mu) > 1 else float(rows[0]["mu_error"])
+                found.append(f"{grains} grains: mu {value_text(mu.mean(), error)}, phi {np.mean([float(row['phi']) for row in rows]):.3f}")
+        table.text(f"size of the packing, nu = {POISSON[alpha]:g}, 300 nodes, rate 1.024e-3", "-", "; ".join(found), "1 < strain < 5")
+
+
 def onset(results, name):
     """First strain from which the mean ordered share of five frames is above one half; None when that never comes."""
     strain, disordered = results.columns("structure", name, "strain", "disordered")
@@ -159,9 +173,8 @@ def shape_rows(table, results):
                        "the drop comes with order")
     for nodes in ("300", "5137"):
         for alpha in ("-0.8", "12"):
-            name = next((n for n in results.runs(scene="shear", alpha=alpha, nodes=nodes)
-                         if results.rows("distributions", n, window="early", quantity="facets")), None)
-            if name:
+            name = results.longest(alpha, nodes)
+            if name and results.rows("distributions", name, window="early", quantity="facets"):
                 centre, count = results.columns("distributions", name, "centre", "count", quantity="facets",
                                                 window="early")
                 table.text(f"facets of a grain (peak), disordered, nu = {POISSON[alpha]:g}, {nodes} nodes", "10 to 11",
@@ -215,7 +228,7 @@ def total_rows(results):
 
 def main(results_folder, plan, page):
     results, table = Results(results_folder, plan), Table()
-    for add in (compaction_rows, early_rows, order_rows, shape_rows, light_rows, rigid_rows):
+    for add in (compaction_rows, early_rows, size_rows, order_rows, shape_rows, light_rows, rigid_rows):
         add(table, results)
     block = "\n".join([BEGIN, "", total_rows(results), "", *table.lines, "", END])
     page = pathlib.Path(page)
