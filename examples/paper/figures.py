@@ -265,7 +265,7 @@ def figure_s3(results, folder):
                 number = np.mean([float(row["inertial_number"]) for row in rows])
                 mu = [float(row["mu"]) for row in rows]
                 error = np.std(mu, ddof=1) / np.sqrt(len(mu)) if len(mu) > 1 else float(rows[0]["mu_error"])
-                phi = np.mean([float(row["phi"]) for row in rows if row["phi"]])
+                phi = np.mean([float(row["phi"] or "nan") for row in rows])
                 curve.append((number, np.mean(mu), error, phi))
             if curve:
                 number, mu, error, phi = np.array(sorted(curve)).T

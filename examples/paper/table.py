@@ -101,17 +101,20 @@ def early_rows(table, results):
 
 
 def size_rows(table, results):
-    for alpha in ("-0.8", "12"):
-        found = []
-        for grains in ("64", "256"):
-            names = [n for n in results.runs(scene="shear", alpha=alpha, nodes=300, grains=grains, rate="1.024e-3", remap="positions")
-                     if results.rows("early", n)]
-            rows = [results.rows("early", n)[0] for n in names]
-            if rows:
-                mu = np.array([float(row["mu"]) for row in rows])
-                error = np.std(mu, ddof=1) / np.sqrt(len(mu)) if len(mu) > 1 else float(rows[0]["mu_error"])
-                found.append(f"{grains} grains: mu {value_text(mu.mean(), error)}, phi {np.mean([float(row['phi']) for row in rows]):.3f}")
-        table.text(f"size of the packing, nu = {POISSON[alpha]:g}, 300 nodes, rate 1.024e-3", "-", "; ".join(found), "1 < strain < 5")
+    """mu and phi of packings of two sizes, at the rates that both were sheared at."""
+    for alpha, nu in POISSON.items():
+        for rate in sorted({row["rate"] for row in results.plan.values() if row["grains"] == "256"}, key=float):
+            found = []
+            for grains in ("64", "256"):
+                names = results.runs(scene="shear", alpha=alpha, nodes=300, grains=grains, rate=rate, remap="positions")
+                rows = [results.rows("early", n)[0] for n in names if results.rows("early", n)]
+                if rows:
+                    mu = np.array([float(row["mu"]) for row in rows])
+                    error = np.std(mu, ddof=1) / np.sqrt(len(mu)) if len(mu) > 1 else float(rows[0]["mu_error"])
+                    phi = np.mean([float(row["phi"]) for row in rows])
+                    found.append(f"{grains} grains: mu {value_text(mu.mean(), error)}, phi {phi:.3f}")
+            if len(found) == 2:
+                table.text(f"size of the packing, nu = {nu:g}, 300 nodes, rate {rate}", "-", "; ".join(found), "1 < strain < 5")
 
 
 def onset(results, name):
