@@ -292,9 +292,10 @@ def figure_s4(results, folder):
             strain, disordered = results.columns("structure", name, "strain", "disordered")
             if not len(strain):
                 continue
-            grains = results.plan[name]["grains"]
-            axis.plot(strain, 1 - disordered, color=colour, lw=1.3 if grains == "64" else 0.7,
-                      ls="--" if grains == "27" else "-", label=f"{grains} grains, seed {results.plan[name]['seed']}")
+            grains, seed = results.plan[name]["grains"], results.plan[name]["seed"]
+            axis.plot(strain, 1 - disordered, color="black" if grains == "256" else colour, lw=0.7 if grains == "27" else 1.3,
+                      alpha=0.5 if grains == "64" and seed != "1" else 1.0, ls="--" if grains == "27" else "-",
+                      label=f"{grains} grains, seed {seed}")
         axis.set_ylabel(f"{label(alpha)}\nordered share", fontsize=8)
         axis.legend(fontsize=6, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, borderpad=0.1)
     axes[-1].set_xlabel("strain (300 nodes a grain, rate 2.048e-3)")
