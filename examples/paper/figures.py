@@ -243,10 +243,9 @@ def figure_s2(results, folder):
             strain, mu = results.columns("series", name, "strain", "mu")
             axes.plot(strain[strain < 5], mu[strain < 5], color=colour, lw=1,
                       label=f"{label(alpha)}, rate {results.plan[name]['rate']}")
-    axes.set_xlabel("strain")
     axes.set_ylabel(r"$\mu$")
-    axes.set_title(r"300 nodes, $\tilde P$ = 0.1", fontsize=9, loc="left")
-    axes.legend(fontsize=8)
+    axes.set_xlabel(r"strain (300 nodes, $\tilde P$ = 0.1)")
+    axes.legend(fontsize=7, ncols=3, loc="lower left", bbox_to_anchor=(0.0, 1.0), frameon=False)
     save(figure, folder, "figure_S2")
 
 
