@@ -26,8 +26,8 @@ double dense_pressure(double alpha) {
   throw std::invalid_argument("dense packing: alpha must be 0 or 2");
 }
 
-CellRates dense_shear_rates(double excess_pressure) {
-  return {.shear = 1.024e-3, .dilation = 0.02 * excess_pressure};
+CellRates dense_shear_rates(double excess_pressure, double rate) {
+  return {.shear = rate, .dilation = 0.02 * excess_pressure};
 }
 
 namespace {

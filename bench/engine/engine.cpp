@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Speed of a dense shear at P~ = 0.1 with contacts and barostat: node-steps per second and the share of each part.
+#include "bench/engine/count_node_steps.h"
 #include "bench/engine/dense_packing.h"
 
-#include <benchmark/benchmark.h>
-
 #include <algorithm>
+#include <benchmark/benchmark.h>
 #include <compare>
 #include <map>
 #include <memory>
@@ -12,8 +12,6 @@
 namespace boba::bench {
 namespace {
 
-/// Rates of the published study, the fastest and the slowest, 1/tau.
-constexpr double fastest = 1.024e-3, slowest = 1.6e-5;
 /// Until vibrations of the faster shear before have died away.
 constexpr int steps_to_settle = 4000;
 
@@ -29,9 +27,7 @@ struct Scene {
 /// One step of shear at P~ = 0.1.
 void shear(Stepper& stepper, const Scene& scene) {
   stepper.advance(Virial::trace);
-  CellRates rates = dense_shear_rates(stepper.pressure() - dense_pressure(scene.alpha));
-  rates.shear = scene.rate;
-  stepper.move_cell(rates);
+  stepper.move_cell(dense_shear_rates(stepper.pressure() - dense_pressure(scene.alpha), scene.rate));
 }
 
 /// One stepper for each scene, shared by the benchmarks that need it.
@@ -42,7 +38,7 @@ Stepper& stepper_of(const Scene& scene) {
     stepper = std::make_unique<Stepper>(dense_packing(scene.grains, scene.nodes, scene.alpha), Material{},
                                         SimulationOptions{.threads = scene.threads, .precision = scene.precision});
     stepper->start();
-    for (int step = 0; scene.rate < fastest && step < steps_to_settle; ++step) {
+    for (int step = 0; scene.rate < fastest_rate && step < steps_to_settle; ++step) {
       shear(*stepper, scene);
     }
   }
@@ -68,7 +64,7 @@ void dense_shear(benchmark::State& state, double rate) {
   const double steps = static_cast<double>(state.iterations());
   const double all = (after.bonds - before.bonds) + (after.contacts - before.contacts) +
                      (after.search - before.search) + (after.integration - before.integration);
-  state.counters["node_steps"] = benchmark::Counter(nodes * steps, benchmark::Counter::kIsRate);
+  count_node_steps(state, stepper);
   state.counters["bonds_%"] = 100.0 * (after.bonds - before.bonds) / all;
   state.counters["contacts_%"] = 100.0 * (after.contacts - before.contacts) / all;
   state.counters["search_%"] = 100.0 * (after.search - before.search) / all;
@@ -90,22 +86,21 @@ void dense_shear(benchmark::State& state, double rate) {
 
 /// The volume pass alone on the same packing: what alpha != 0 adds before any force is known.
 void node_volumes(benchmark::State& state) {
-  Stepper& stepper = stepper_of({static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 2.0, 1, Precision::full, fastest});
+  Stepper& stepper = stepper_of(
+      {static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 2.0, 1, Precision::full, fastest_rate});
   for (auto _ : state) {
     stepper.volumes_only();
   }
-  const double nodes = static_cast<double>(stepper.packing().position.size());
-  state.counters["node_steps"] =
-      benchmark::Counter(nodes * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+  count_node_steps(state, stepper);
 }
 
-BENCHMARK_CAPTURE(dense_shear, slowest, slowest)
+BENCHMARK_CAPTURE(dense_shear, slowest, slowest_rate)
     ->ArgNames({"grains", "nodes", "alpha", "threads", "mixed"})
     ->ArgsProduct({{16}, {5137}, {2, 0}, {1}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->MinTime(3.0)
     ->UseRealTime();
-BENCHMARK_CAPTURE(dense_shear, fastest, fastest)
+BENCHMARK_CAPTURE(dense_shear, fastest, fastest_rate)
     ->ArgNames({"grains", "nodes", "alpha", "threads", "mixed"})
     ->ArgsProduct({{16}, {5137}, {2, 0}, {1}, {0, 1}})
     ->ArgsProduct({{64}, {5137}, {2, 0}, {1, 2}, {0, 1}})

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What forces and the cell's motion need not do: on one dense packing.
+#include "bench/engine/count_node_steps.h"
 #include "bench/engine/dense_packing.h"
 #include "bench/engine/skips.h"
 

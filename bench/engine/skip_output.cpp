@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a run need not look at or write: the same dense shear with frames, and with nobody asking.
+#include "bench/engine/count_node_steps.h"
 #include "bench/engine/dense_packing.h"
 #include "bench/engine/skips.h"
-
 #include "bpm/app/write_behind.h"
 #include "bpm/io/lammps_dump.h"
 #include "bpm/io/trajectory.h"

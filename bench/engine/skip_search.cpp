@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the search for contacts need not do: lists that outlive motion, grains and nodes that cannot touch.
+#include "bench/engine/count_node_steps.h"
 #include "bench/engine/dense_packing.h"
 #include "bench/engine/skips.h"
 
@@ -49,7 +50,9 @@ void step(benchmark::State& state, const Packing& packing, const Steps& steps) {
   state.counters["searches/step"] = static_cast<double>(list.counts().pairs) / static_cast<double>(stepper.step());
 }
 
-void add(const char* name, const Lattice& lattice, const Steps& steps = {.gamma = 0.0}) {
+const Steps undamped{.gamma = 0.0};
+
+void add(const char* name, const Lattice& lattice, const Steps& steps = undamped) {
   register_skip(name, 300, [=](benchmark::State& state) { step(state, swinging_grains(lattice), steps); });
 }
 
@@ -64,8 +67,8 @@ kernels::ContactNode contact_node(const Vector3& x, const Vector3& v) {
   return {{x[0], x[1], x[2]}, {v[0], v[1], v[2]}, {}};
 }
 
-/// The copies of the nodes and the contact pass of a dense packing, outside the engine: of the nodes and candidates that
-/// may touch before the list's next update, of all that are listed, or of all nodes.
+/// The copies of the nodes and the contact pass of a dense packing, outside the engine: of the nodes and candidates
+/// that may touch before the list's next update, of all that are listed, or of all nodes.
 void contacts(benchmark::State& state, Looked looked) {
   Stepper stepper(dense_packing(16, 5137, 2.0), Material{}, SimulationOptions{});
   stepper.start();
@@ -102,9 +105,9 @@ void contacts(benchmark::State& state, Looked looked) {
       rows.resize(touches.size());
       const Vector3 shift = now.box.h() * Vector3(pair.image.a, pair.image.b, pair.image.c);
       kernels::ContactSums sums = no_contacts;
-      touching += static_cast<double>(
-          table.contacts({candidates.data(), n, &node[first[pair.a]], &node[first[pair.b]], {shift[0], shift[1], shift[2]}, {}},
-                         parameters, rows.data(), touches.data(), sums));
+      touching += static_cast<double>(table.contacts(
+          {candidates.data(), n, &node[first[pair.a]], &node[first[pair.b]], {shift[0], shift[1], shift[2]}, {}},
+          parameters, rows.data(), touches.data(), sums));
       looked_at += static_cast<double>(n);
     }
     benchmark::DoNotOptimize(touches.data());
@@ -126,8 +129,7 @@ const bool added = [] {
   common.common_lists = true;
   add_dense("list_by_absolute_motion/with", common);
   add_dense("list_by_absolute_motion/without", sheared);
-  const Steps swinging{.gamma = 0.0};
-  common = swinging;
+  common = undamped;
   common.common_lists = true;
   add("search_inside_grains/with", {.alone = true, .gap = wide_gap}, common);
   add("search_inside_grains/without", {.alone = true, .gap = wide_gap});

@@ -14,12 +14,6 @@ void register_skip(const std::string& name, int steps, const std::function<void(
       ->UseRealTime();
 }
 
-void count_node_steps(benchmark::State& state, const Stepper& stepper) {
-  const auto nodes = static_cast<double>(stepper.packing().first_nodes().back());
-  state.counters["node_steps"] =
-      benchmark::Counter(nodes * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
-}
-
 Packing swinging_grains(const Lattice& lattice) {
   TemplateSpec spec;
   spec.n_nodes = 5137;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/dynamics/stepper.h"
+#include "bpm/packing/packing.h"
 
 #include <benchmark/benchmark.h>
-
 #include <functional>
 #include <string>
 
@@ -13,9 +12,6 @@ namespace boba::bench {
 /// A part that is not done where nothing needs it: the same steps with and without it. Registered as skip/NAME, to be
 /// read in ms a step.
 void register_skip(const std::string& name, int steps, const std::function<void(benchmark::State&)>& run);
-
-/// Node-steps a second of the steps that were timed.
-void count_node_steps(benchmark::State& state, const Stepper& stepper);
 
 /// Grains of 5137 nodes on a cubic lattice, 4 x 2 x 2 of them or one alone, with `gap` between their bounding boxes and
 /// those of their images (d). Each is being squeezed along x and drawn out along y at 0.05 d/tau, so that shapes and

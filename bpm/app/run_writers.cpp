@@ -47,7 +47,7 @@ TrajectoryWriter trajectory_writer(const RunSetup& setup, const Simulation& simu
 }
 
 WriteBehind::Write dump_writer(const RunSetup& setup, const std::shared_ptr<const Topology>& topology,
-                                 std::int64_t last_step) {
+                               std::int64_t last_step) {
   const std::filesystem::path path = setup.folder.dump();
   if (setup.restart) {
     truncate_lammps_dump(path, last_step);
@@ -58,7 +58,7 @@ WriteBehind::Write dump_writer(const RunSetup& setup, const std::shared_ptr<cons
 }
 
 WriteBehind::Write vtk_writer(const RunSetup& setup, const std::shared_ptr<const Topology>& topology,
-                                std::int64_t last_step) {
+                              std::int64_t last_step) {
   const std::filesystem::path path = setup.folder.vtk() / "packing.pvd";
   std::filesystem::create_directories(setup.folder.vtk());
   auto series = std::make_shared<VtkSeries>(setup.restart ? VtkSeries::go_on(path, last_step) : VtkSeries(path));

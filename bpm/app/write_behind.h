@@ -8,8 +8,8 @@
 
 namespace boba {
 
-/// Hands frames to a writer on a thread of its own, one at a time and in their order. The run meanwhile goes on; it waits
-/// for a frame only when the next one comes, or when somebody wants to rely on it.
+/// Hands frames to a writer on a thread of its own, one at a time and in their order. The run meanwhile goes on; it
+/// waits for a frame only when the next one comes, or when somebody wants to rely on it.
 ///
 /// For writers that call neither HDF5 (which the run calls too) nor MPI.
 class WriteBehind {

@@ -174,11 +174,11 @@ private:
   double crept_ = 0.0;          ///< bound on a node's motion since then beyond the cell's, d, but for followed ones
   double crept_followed_ = 0.0; ///< the same of any node
   double brisk_motion_;         ///< d a step
-  /// The same for near candidates: their reach, the motion of the cell and of nodes since they were found, and how far two
-  /// nodes that touch may have approached each other in the last step, d.
+  /// The same for near candidates: their reach, the motion of the cell and of nodes since they were found, and how far
+  /// two nodes that touch may have approached each other in the last step, d.
   double near_reach_ = 0.0, crept_near_ = 0.0, last_approach_ = 0.0;
   Matrix3 cell_since_near_ = Matrix3::Identity();
-  AlignedArray<float> place_;   ///< X, lane layout, d
+  AlignedArray<float> place_; ///< X, lane layout, d
   std::vector<TrackedGrain> grains_;
   std::vector<ContactPair> pairs_; ///< sorted by a, b, image
   std::vector<std::vector<ContactSide>> sides_;

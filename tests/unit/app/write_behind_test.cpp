@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/write_behind.h"
 
+#include <chrono>
 #include <gtest/gtest.h>
-
 #include <semaphore>
 #include <stdexcept>
 #include <thread>
