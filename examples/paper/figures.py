@@ -49,6 +49,18 @@ class Results:
         return max(names, key=lambda name: (round(self.reached(name)), int(self.plan[name]["grains"])), default=None)
 
 
+def mean_of_runs(values, error):
+    """Mean of one value a run, and its error; `error` is that of one. Few runs may agree by chance: their mean has the larger error."""
+    spread = np.std(values, ddof=1) if len(values) > 1 else np.nan
+    return float(np.mean(values)), float(np.fmax(spread, error) / np.sqrt(len(values)))
+
+
+def main_size(results):
+    """Number of grains that most runs of early shear at 300 nodes have; None when there is no run."""
+    numbers = [results.plan[name]["grains"] for name in results.runs(scene="shear", nodes=300) if results.rows("early", name)]
+    return max(numbers, key=lambda number: (numbers.count(number), int(number)), default=None)
+
+
 def label(alpha):
     return rf"$\nu$ = {POISSON[alpha]:g}"
 
@@ -251,8 +263,9 @@ def figure_s2(results, folder):
 
 def figure_s3(results, folder):
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8))
+    size = main_size(results)
     for alpha, colour in COLOURS.items():
-        for nodes, grains, remap, style in (("300", "64", "positions", "o-"), ("300", "64", "velocities", "x"),
+        for nodes, grains, remap, style in (("300", size, "positions", "o-"), ("300", size, "velocities", "x"),
                                             ("300", "256", "positions", "D"), ("5137", "16", "positions", "s"),
                                             ("5137", "64", "positions", "P")):
             points = {}
@@ -262,10 +275,9 @@ def figure_s3(results, folder):
             curve = []
             for rows in points.values():
                 number = np.mean([float(row["inertial_number"]) for row in rows])
-                mu = [float(row["mu"]) for row in rows]
-                error = np.std(mu, ddof=1) / np.sqrt(len(mu)) if len(mu) > 1 else float(rows[0]["mu_error"])
+                mu, error = mean_of_runs([float(row["mu"]) for row in rows], float(rows[0]["mu_error"]))
                 phi = np.mean([float(row["phi"] or "nan") for row in rows])
-                curve.append((number, np.mean(mu), error, phi))
+                curve.append((number, mu, error, phi))
             if curve:
                 number, mu, error, phi = np.array(sorted(curve)).T
                 text = f"{label(alpha)}" if style == "o-" else None
@@ -273,7 +285,7 @@ def figure_s3(results, folder):
                 right.plot(number, phi, style, color=colour, ms=4, lw=1)
     left.set_ylabel(r"$\mu$ (1 < strain < 5)")
     right.set_ylabel(r"$\phi$")
-    left.set_title("300 nodes: circles 64 grains (crosses: remap velocities), diamonds 256;\n5137 nodes: squares 16 grains, plus 64", fontsize=8, loc="left")
+    left.set_title(f"300 nodes: circles {size} grains (crosses: remap velocities), diamonds 256;\n5137 nodes: squares 16 grains, plus 64", fontsize=8, loc="left")
     for axes in (left, right):
         axes.set_xscale("log")
         axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))

@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 
-from figures import POISSON, Results
+from figures import POISSON, Results, mean_of_runs
 
 BEGIN, END = "<!-- numbers: written by examples/paper/table.py -->", "<!-- end of numbers -->"
 
@@ -24,13 +24,11 @@ class Table:
         self.lines = ["| what | published | Boba +- error | difference in errors | why |", "| --- | --- | --- | --- | --- |"]
 
     def number(self, what, published, values, error, why):
-        """`values`: one a run; `error` that of one. Few runs may agree by chance: their mean has the larger of the two errors."""
+        """`values` and `error` as in mean_of_runs."""
         if not len(values):
             self.lines.append(f"| {what} | {published:g} | not afforded | | {why} |")
             return
-        mean = float(np.mean(values))
-        if len(values) > 1:
-            error = np.fmax(np.std(values, ddof=1), error) / np.sqrt(len(values))
+        mean, error = mean_of_runs(values, error)
         apart = f"{(mean - published) / error:+.0f}" if np.isfinite(error) and error > 0 else "no error known"
         runs = f" ({len(values)} runs)" if len(values) > 1 else ""
         self.lines.append(f"| {what} | {published:g} | {value_text(mean, error)}{runs} | {apart} | {why} |")
@@ -109,10 +107,9 @@ def size_rows(table, results):
                 names = results.runs(scene="shear", alpha=alpha, nodes=300, grains=grains, rate=rate, remap="positions")
                 rows = [results.rows("early", n)[0] for n in names if results.rows("early", n)]
                 if rows:
-                    mu = np.array([float(row["mu"]) for row in rows])
-                    error = np.std(mu, ddof=1) / np.sqrt(len(mu)) if len(mu) > 1 else float(rows[0]["mu_error"])
+                    mu = mean_of_runs([float(row["mu"]) for row in rows], float(rows[0]["mu_error"]))
                     phi = np.mean([float(row["phi"]) for row in rows])
-                    found.append(f"{grains} grains: mu {value_text(mu.mean(), error)}, phi {phi:.3f}")
+                    found.append(f"{grains} grains: mu {value_text(*mu)}, phi {phi:.3f}")
             if len(found) == 2:
                 table.text(f"size of the packing, nu = {nu:g}, 300 nodes, rate {rate}", "-", "; ".join(found), "1 < strain < 5")
 
@@ -135,10 +132,10 @@ def order_rows(table, results):
     published = {"-0.8": "3 of 3 by strain 102.4", "0": "3 of 3", "2": "3 of 3", "5": "1 of 3", "12": "0 of 3"}
     for alpha, nu in POISSON.items():
         for grains in sorted({r["grains"] for r in results.plan.values() if r["nodes"] == "300"}, key=int)[::-1]:
-            names = [n for n in results.runs(scene="shear", alpha=alpha, nodes=300, grains=grains, rate="2.048e-3")
-                     if results.reached(n) > 10]
-            if not results.runs(scene="shear", alpha=alpha, nodes=300, grains=grains, rate="2.048e-3"):
+            planned = results.runs(scene="shear", alpha=alpha, nodes=300, grains=grains, rate="2.048e-3")
+            if not planned:
                 continue
+            names = [n for n in planned if results.reached(n) > 10]
             ordered = [n for n in names if late_order(results, n) > 0.5]
             detail = "; ".join(f"to strain {results.reached(n):.0f}: " + (
                 f"order from {onset(results, n):.0f}, share at the end {late_order(results, n):.2f}"
