@@ -50,6 +50,7 @@ void ContactList::layout_changed() {
   place_.assign(layout_.size(), 0.0f);
   grains_.assign(layout_.n_grains(), {});
   sides_.assign(layout_.n_grains(), {});
+  near_sides_.assign(layout_.n_grains(), {});
   pairs_.clear();
   ghosts_.clear();
   invalidate();
@@ -364,6 +365,9 @@ void ContactList::list_near() {
 #pragma omp parallel for schedule(dynamic, 1)
   for (const int g : layout_.grains()) {
     grains_[g].near = nodes_in(g, &ContactPair::near);
+    near_sides_[g].clear();
+    std::copy_if(sides_[g].begin(), sides_[g].end(), std::back_inserter(near_sides_[g]),
+                 [&](const ContactSide& side) { return !pairs_[side.pair].near.empty(); });
   }
   for (const int g : ghosts_) {
     grains_[g].near = nodes_in(g, &ContactPair::near);

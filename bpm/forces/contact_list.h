@@ -57,6 +57,8 @@ public:
   const std::vector<ContactPair>& pairs() const { return pairs_; }
   /// The pairs a grain takes part in, in the order in which it sums them up.
   std::span<const ContactSide> sides(int grain) const { return sides_[grain]; }
+  /// Those of them that have near candidates, in the same order; known after list_near.
+  std::span<const ContactSide> near_sides(int grain) const { return near_sides_[grain]; }
   /// Nodes of a grain that are in any candidate, ascending.
   std::span<const std::int32_t> listed(int grain) const { return grains_[grain].listed; }
   /// True as long as no candidate can have come to touch that was not near when near candidates were last found.
@@ -66,7 +68,7 @@ public:
   double begin_near();
   /// Nodes of a grain that are in any pair's near candidates, ascending; known after list_near.
   std::span<const std::int32_t> near(int grain) const { return grains_[grain].near; }
-  /// Lists the nodes of the near candidates, once they have been found.
+  /// Lists the nodes of the near candidates and the pairs that have any, once they have been found.
   void list_near();
 
   /// Grains of other ranks that may touch ours, ascending.
@@ -181,7 +183,7 @@ private:
   AlignedArray<float> place_; ///< X, lane layout, d
   std::vector<TrackedGrain> grains_;
   std::vector<ContactPair> pairs_; ///< sorted by a, b, image
-  std::vector<std::vector<ContactSide>> sides_;
+  std::vector<std::vector<ContactSide>> sides_, near_sides_; ///< per grain
   const Distribution& distribution_;
   std::vector<int> ghosts_;
   std::vector<std::uint8_t> fresh_;          ///< per ghost: nothing of it is known yet

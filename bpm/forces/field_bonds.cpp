@@ -19,7 +19,7 @@ void ForceField::add_contacts(int grain, const kernels::LaneKernels<Coordinate, 
   if (with_sums) {
     sums = no_contacts;
   }
-  for (const ContactSide& side : contact_list_.sides(grain)) {
+  for (const ContactSide& side : contact_list_.near_sides(grain)) {
     const ContactPair& pair = contact_list_.pairs()[side.pair];
     lane_kernels.add_touches(pair.touches.data(), static_cast<std::int64_t>(pair.touches.size()), side.sign, f,
                              layout_.stride(grain));

@@ -29,6 +29,7 @@ void ForceField::find_near(ContactPair& pair, const Box& box, double reach) {
                    std::back_inserter(all));
     pair.near.assign(all.begin(), all.end());
   }
+  pair.touches.clear(); // a pair without near candidates is not evaluated
 }
 
 void ForceField::contacts_between(ContactPair& pair, const Box& box, const Evaluation& what) {
@@ -107,20 +108,21 @@ void ForceField::list_near(const Box& box) {
   }
 }
 
-/// Sorts pairs and blocks by whether they wait for other ranks.
+/// Sorts the pairs that may touch, and all blocks, by whether they wait for other ranks.
 void ForceField::divide() {
   own_part_ = {};
   shared_part_ = {};
   const std::vector<ContactPair>& pairs = contact_list_.pairs();
   const auto is_shared = [&](const ContactPair& pair) { return !layout_.holds(pair.a) || !layout_.holds(pair.b); };
   for (int p = 0; p < static_cast<int>(pairs.size()); ++p) {
-    (is_shared(pairs[p]) ? shared_part_ : own_part_).pairs.push_back(p);
+    if (!pairs[p].near.empty()) {
+      (is_shared(pairs[p]) ? shared_part_ : own_part_).pairs.push_back(p);
+    }
   }
   const auto waits = [&](int grain) {
-    const auto sides = grain >= 0 ? contact_list_.sides(grain) : std::span<const ContactSide>{};
-    return std::any_of(sides.begin(), sides.end(), [&](const ContactSide& side) {
-      return is_shared(pairs[side.pair]) && !pairs[side.pair].near.empty();
-    });
+    const auto sides = grain >= 0 ? contact_list_.near_sides(grain) : std::span<const ContactSide>{};
+    return std::any_of(sides.begin(), sides.end(),
+                       [&](const ContactSide& side) { return is_shared(pairs[side.pair]); });
   };
   for (int b = 0; b < static_cast<int>(layout_.blocks().size()); ++b) {
     const std::vector<int>& grains = layout_.blocks()[b].grain;
