@@ -14,7 +14,7 @@ double barostat_gain(const Barostat& barostat, const BarostatContext& context) {
   if (context.shear_rate != 0.0) {
     response = std::min(0.01 / std::abs(context.shear_rate), response);
   }
-  response = std::max(response, 10.0 * context.sound_crossing);
+  response = std::max(response, 3.0 * context.sound_crossing);
   return 1.0 / (3.0 * context.bulk_modulus * response);
 }
 

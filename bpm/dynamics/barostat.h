@@ -12,9 +12,8 @@ struct BarostatContext {
   double shear_rate = 0.0;    ///< 1/tau, 0 when nothing shears
 };
 
-/// The gain asked for or, by default, g = 1 / (3 K t_c) with t_c = min(0.01 / |rate|, 100 tau), but t_c at least ten sound
-/// crossings of the cell: d/(k tau).
-/// Source: docs/notation.md, "Barostat".
+/// The gain asked for or, by default, g = 1 / (3 K t_c) with t_c = min(0.01 / |rate|, 100 tau), but t_c at least three
+/// sound crossings of the cell: d/(k tau). Source: docs/notation.md, "Barostat".
 double barostat_gain(const Barostat& barostat, const BarostatContext& context);
 
 /// d ln L / dt = gain (P - target), limited to +- rate_cap (1/tau).

@@ -31,6 +31,14 @@ bool CompressDriver::may_end(const Stepper& stepper) const {
   return phase_ == Phase::settle && (stepper.step() + 1) % settle_interval == 0;
 }
 
+/// The modulus that the barostat has to do with: dP / d ln(1/V) of the second half of the ramp. Grains that rearrange
+/// answer to a change of volume with a fraction of the affine modulus, which is the most it can be.
+double CompressDriver::bulk_modulus(Stepper& stepper) const {
+  const double affine = stepper.affine_bulk_modulus();
+  const double compressed = 3.0 * stage_.rate * (stepper.time() - halfway_.time);
+  return compressed > 0.0 ? std::min(affine, (stepper.pressure() - halfway_.pressure) / compressed) : affine;
+}
+
 CellRates CompressDriver::update(Stepper& stepper) {
   if (stepper.time() - start_time_ > stage_.max_time) {
     throw std::runtime_error(
@@ -38,8 +46,11 @@ CellRates CompressDriver::update(Stepper& stepper) {
                     "a smaller rate, a larger max_time or wider tolerances help",
                     stage_.max_time, stepper.pressure(), stage_.barostat.pressure, stepper.kinetic_energy()));
   }
+  if (phase_ == Phase::ramp && halfway_.time < 0.0 && stepper.pressure() >= 0.5 * stage_.barostat.pressure) {
+    halfway_ = {stepper.time(), stepper.pressure()};
+  }
   if (phase_ == Phase::ramp && stepper.pressure() >= stage_.barostat.pressure) {
-    const double modulus = stepper.affine_bulk_modulus();
+    const double modulus = bulk_modulus(stepper);
     gain_ = barostat_gain(stage_.barostat, {modulus, stepper.sound_crossing(modulus), 0.0});
     phase_ = Phase::settle;
   }
@@ -65,7 +76,7 @@ StageProgress CompressDriver::progress(const Stepper& stepper) const {
 }
 
 void CompressDriver::save(SavedState& saved) const {
-  saved.real["driver"] = {static_cast<double>(phase_), start_time_, gain_};
+  saved.real["driver"] = {static_cast<double>(phase_), start_time_, gain_, halfway_.time, halfway_.pressure};
 }
 
 void CompressDriver::restore(const SavedState& saved, Stepper&) {
@@ -73,6 +84,9 @@ void CompressDriver::restore(const SavedState& saved, Stepper&) {
   phase_ = static_cast<Phase>(static_cast<int>(numbers.at(0)));
   start_time_ = numbers.at(1);
   gain_ = numbers.at(2);
+  if (numbers.size() > 3) { // checkpoints of earlier builds do not have it
+    halfway_ = {numbers.at(3), numbers.at(4)};
+  }
 }
 
 } // namespace boba

@@ -24,11 +24,18 @@ public:
 private:
   enum class Phase { ramp, settle, settled };
   bool has_settled(const Stepper& stepper) const;
+  double bulk_modulus(Stepper& stepper) const;
 
+  /// A moment of the ramp.
+  struct Halfway {
+    double time = -1.0;    ///< tau, negative before it came
+    double pressure = 0.0; ///< k/d
+  };
   CompressStage stage_;
   Phase phase_ = Phase::ramp;
   double start_time_ = 0.0;
   double gain_ = 0.0;
+  Halfway halfway_; ///< when the ramp passed half of the target pressure
 };
 
 } // namespace boba
