@@ -299,14 +299,15 @@ def figure_s3(results, folder):
 def figure_s4(results, folder):
     figure, axes = plt.subplots(5, 1, figsize=(6, 8), sharex=True, sharey=True)
     for axis, (alpha, colour) in zip(axes, COLOURS.items()):
+        blacks = iter(("0.0", "0.35", "0.55", "0.7"))
         for name in results.runs(scene="shear", alpha=alpha, nodes=300, rate="2.048e-3"):
             strain, disordered = results.columns("structure", name, "strain", "disordered")
             if not len(strain):
                 continue
             grains, seed = results.plan[name]["grains"], results.plan[name]["seed"]
-            axis.plot(strain, 1 - disordered, color="black" if grains == "256" else colour, lw=0.7 if grains == "27" else 1.3,
+            axis.plot(strain, 1 - disordered, color=next(blacks) if grains == "256" else colour, lw=0.7 if grains == "27" else 1.3,
                       alpha=0.5 if grains == "64" and seed != "1" else 1.0, ls="--" if grains == "27" else "-",
-                      label=f"{grains} grains, seed {seed}")
+                      label=f"{grains} grains, seed {seed}{' (AVX-512)' if 'avx512' in name else ''}")
         axis.set_ylabel(f"{label(alpha)}\nordered share", fontsize=8)
         axis.legend(fontsize=6, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, borderpad=0.1)
     axes[-1].set_xlabel("strain (300 nodes a grain, rate 2.048e-3)")

@@ -13,9 +13,10 @@ def settings(row):
         values |= {"template.0.nodes": row["nodes"], "species.0.alpha": row["alpha"]}
     if row["rate"]:
         values |= {"stage.shear.rate": row["rate"], "stage.shear.strain": row["strain"]}
+    if row["every"]:
+        values["measure.0.every_strain"] = row["every"]
     if row["scene"] == "shear":
-        values |= {"stage.shear.remap": f'"{row["remap"]}"', "measure.0.every_strain": row["every"],
-                   "measure.1.every_strain": row["every"]}
+        values |= {"stage.shear.remap": f'"{row["remap"]}"', "measure.1.every_strain": row["every"]}
     return values
 
 

@@ -8,6 +8,8 @@ import sys
 
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
+from boba import blocked_mean
 from figures import POISSON, Results, mean_of_runs
 
 BEGIN, END = "<!-- numbers: written by examples/paper/table.py -->", "<!-- end of numbers -->"
@@ -199,6 +201,8 @@ def light_rows(table, results):
 def rigid_rows(table, results):
     names = sorted((n for n in results.runs(scene="spheres") if results.rows("early", n)),
                    key=lambda n: float(results.plan[n]["rate"]))
+    long = [n for n in names if float(results.plan[n]["strain"]) > 5.0]
+    names = [n for n in names if n not in long]
     starts = [float(results.rows("early", name)[0]["phi_start"]) for name in names[:1]]
     table.number("rigid spheres: phi compressed to P~ = 1e-5, at rest", 0.64, starts, np.nan,
                  "one packing of 216 spheres")
@@ -210,11 +214,19 @@ def rigid_rows(table, results):
                      float(row["mu_error"]), why + "; Peyneau and Roux: the limit I -> 0")
         table.number(f"the same: phi at I = {number:.2g}", 0.64, [float(row["phi_reference"])], np.nan, why)
         table.text("the same: crystal", "none (strain 1000)", f"share {late_order(results, name):.2f} at the end",
-                   "far shorter")
+                   f"to strain {results.plan[name]['strain']}; the long run is below")
         for peer in results.peer(results.plan[name]["rate"]):
             table.text(f"the same: mu and phi at I = {number:.2g} in YADE", "-",
                        f"{float(peer['mu']):.3f} +- {float(peer['mu_error']):.3f}, phi {float(peer['phi']):.3f} (at rest {float(peer['phi_start']):.3f})",
                        "an independent program, same law, number, pressure and rate; velocities follow the cell")
+    for name in long:
+        strain, mu, phi = results.columns("series", name, "strain", "mu", "phi_reference")
+        frames, disordered = results.columns("structure", name, "strain", "disordered")
+        mean, error = blocked_mean(mu[strain > 1.0])
+        number = float(results.rows("early", name)[0]["inertial_number"])
+        table.text(f"rigid spheres sheared at I = {number:.2g} to strain {results.reached(name):.0f}: crystal", "none (strain 1000)",
+                   f"largest share in any of {len(frames)} frames {1 - disordered.min():.3f}; mu {value_text(mean, error)}, phi {phi[strain > 1.0].mean():.3f}",
+                   f"{results.plan[name]['grains']} spheres")
 
 
 def total_rows(results):
