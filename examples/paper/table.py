@@ -198,6 +198,24 @@ def light_rows(table, results):
         table.text("the same: crystal", "none", f"share {late_order(results, names[0]):.2f} at the end", "far shorter")
 
 
+def slow_limit(number, mu, error):
+    """mu_0 of mu = mu_0 + c I^b, its error and b: least squares weighted by the errors, the error from 400 disturbed copies."""
+    powers = np.linspace(0.1, 1.0, 181)
+
+    def fit(values):
+        best = (np.inf, np.nan, np.nan)
+        for power in powers:
+            matrix = np.column_stack([np.ones_like(number), number**power]) / error[:, None]
+            solution = np.linalg.lstsq(matrix, values / error, rcond=None)[0]
+            best = min(best, (np.sum((matrix @ solution - values / error) ** 2), solution[0], power))
+        return best[1:]
+
+    generator = np.random.default_rng(1)
+    disturbed = [fit(mu + error * generator.standard_normal(len(mu)))[0] for _ in range(400)]
+    limit, power = fit(mu)
+    return limit, np.std(disturbed), power
+
+
 def rigid_rows(table, results):
     names = sorted((n for n in results.runs(scene="spheres") if results.rows("early", n)),
                    key=lambda n: float(results.plan[n]["rate"]))
@@ -219,13 +237,18 @@ def rigid_rows(table, results):
             table.text(f"the same: mu and phi at I = {number:.2g} in YADE", "-",
                        f"{float(peer['mu']):.3f} +- {float(peer['mu_error']):.3f}, phi {float(peer['phi']):.3f} (at rest {float(peer['phi_start']):.3f})",
                        "an independent program, same law, number, pressure and rate; velocities follow the cell")
+    rows = [results.rows("early", name)[0] for name in names]
+    if len(rows) > 3:
+        number, mu, error = (np.array([float(row[key]) for row in rows]) for key in ("inertial_number", "mu", "mu_error"))
+        limit, limit_error, power = slow_limit(number, mu, error)
+        table.number("rigid spheres: mu for I -> 0, mu_0 + c I^b", 0.1, [limit], limit_error, f"{len(rows)} rates, b = {power:.2f}")
     for name in long:
         strain, mu, phi = results.columns("series", name, "strain", "mu", "phi_reference")
         frames, disordered = results.columns("structure", name, "strain", "disordered")
         mean, error = blocked_mean(mu[strain > 1.0])
         number = float(results.rows("early", name)[0]["inertial_number"])
         table.text(f"rigid spheres sheared at I = {number:.2g} to strain {results.reached(name):.0f}: crystal", "none (strain 1000)",
-                   f"largest share in any of {len(frames)} frames {1 - disordered.min():.3f}; mu {value_text(mean, error)}, phi {phi[strain > 1.0].mean():.3f}",
+                   f"largest share in any of {len(frames)} frames {1 - disordered.min():.3f}; mu {mean:.4f} +- {error:.4f}, phi {phi[strain > 1.0].mean():.3f}",
                    f"{results.plan[name]['grains']} spheres")
 
 
