@@ -232,7 +232,7 @@ def rigid_rows(table, results):
                      float(row["mu_error"]), why + "; Peyneau and Roux: the limit I -> 0")
         table.number(f"the same: phi at I = {number:.2g}", 0.64, [float(row["phi_reference"])], np.nan, why)
         table.text("the same: crystal", "none (strain 1000)", f"share {late_order(results, name):.2f} at the end",
-                   f"to strain {results.plan[name]['strain']}; the long run is below")
+                   "far shorter" + (f"; to strain {results.reached(long[0]):.0f} below" if long else ""))
         for peer in results.peer(results.plan[name]["rate"]):
             table.text(f"the same: mu and phi at I = {number:.2g} in YADE", "-",
                        f"{float(peer['mu']):.3f} +- {float(peer['mu_error']):.3f}, phi {float(peer['phi']):.3f} (at rest {float(peer['phi_start']):.3f})",
