@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws figures 2 to 4, S1 to S4 and the compaction from the tables alone: figures.py RESULTS RUNS.csv FOLDER."""
+"""Draws figures 2 to 4, S1 to S4, the compaction and the order at nu = -0.5 from the tables alone: figures.py RESULTS RUNS.csv FOLDER."""
 import csv
 import pathlib
 import sys
@@ -296,25 +296,48 @@ def figure_s3(results, folder):
     save(figure, folder, "figure_S3")
 
 
+def order_curve(results, axis, name, **style):
+    strain, disordered = results.columns("structure", name, "strain", "disordered")
+    if len(strain):
+        axis.plot(strain, 1 - disordered, **style)
+
+
 def figure_s4(results, folder):
     figure, axes = plt.subplots(5, 1, figsize=(6, 8), sharex=True, sharey=True)
     for axis, (alpha, colour) in zip(axes, COLOURS.items()):
         blacks = iter(("0.0", "0.35", "0.55", "0.7"))
         for name in results.runs(scene="shear", alpha=alpha, nodes=300, rate="2.048e-3"):
-            strain, disordered = results.columns("structure", name, "strain", "disordered")
-            if not len(strain):
-                continue
             grains, seed = results.plan[name]["grains"], results.plan[name]["seed"]
-            axis.plot(strain, 1 - disordered, color=next(blacks) if grains == "256" else colour, lw=0.7 if grains == "27" else 1.3,
-                      alpha=0.5 if grains == "64" and seed != "1" else 1.0, ls="--" if grains == "27" else "-",
-                      label=f"{grains} grains, seed {seed}{' (AVX-512)' if 'avx512' in name else ''}")
+            shade = next(blacks) if grains == "256" else "#6a0dad" if grains == "1024" else colour
+            order_curve(results, axis, name, color=shade, lw={"27": 0.7, "1024": 2.0}.get(grains, 1.3),
+                        alpha=0.5 if grains == "64" and seed != "1" else 1.0, ls="--" if grains == "27" else "-",
+                        label=f"{grains} grains, seed {seed}{' (AVX-512)' if 'avx512' in name else ''}")
         axis.set_ylabel(f"{label(alpha)}\nordered share", fontsize=8)
-        axis.legend(fontsize=6, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, borderpad=0.1)
+        if axis.lines:
+            axis.legend(fontsize=6, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, borderpad=0.1)
     axes[-1].set_xlabel("strain (300 nodes a grain, rate 2.048e-3)")
     save(figure, folder, "figure_S4")
 
 
-FIGURES = [compaction_figure, figure_2, figure_3, figure_4, figure_s1, figure_s2, figure_s3, figure_s4]
+def reduction_figure(results, folder):
+    """Order at nu = -0.5: one panel for each size, resolution and rate, a curve for each seed."""
+    kinds = {}
+    for name in results.runs(scene="shear", alpha="12", remap="positions"):
+        row = results.plan[name]
+        if results.reached(name) > 10 and row["grains"] != "27":
+            kinds.setdefault((row["grains"], row["nodes"], row["rate"]), []).append(name)
+    panels = max(len(kinds), 1)
+    figure, axes = plt.subplots(panels, 1, figsize=(6, 0.6 + 1.3 * panels), sharex=True, sharey=True, squeeze=False)
+    for axis, ((grains, nodes, rate), names) in zip(axes[:, 0], kinds.items()):
+        for name, shade in zip(names, plt.cm.inferno(np.linspace(0.15, 0.75, len(names)))):
+            order_curve(results, axis, name, color=shade, lw=1.2)
+        axis.set_title(f"{grains} grains of {nodes} nodes, rate {rate}", fontsize=8, loc="left")
+        axis.set_ylabel("ordered share", fontsize=8)
+    axes[-1, 0].set_xlabel("strain (nu = -0.5)")
+    save(figure, folder, "reduction")
+
+
+FIGURES = [compaction_figure, figure_2, figure_3, figure_4, figure_s1, figure_s2, figure_s3, figure_s4, reduction_figure]
 
 
 def main(results, plan, folder):

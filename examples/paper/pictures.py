@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Figure 1 from trajectories: pictures.py RUNS.csv OUT FIGURE.png.
 
-Rows nu = 0.4, 0 (0.25 while there is no run at 0), -0.5; columns: a squeezed cylinder, the packing at strain 3.2 and at the largest strain, a
-cross-section at 3.2, hulls of some grains.
+Rows nu = 0.4, 0 (0.25 while there is no run at 0), -0.5; columns: a squeezed cylinder, the packing at strain 3.2 and the last of the largest
+packing beyond strain 20, a cross-section at 3.2, a grain's hull.
 """
 import csv
 import pathlib
@@ -21,12 +21,12 @@ from boba import pictures
 from figures import POISSON
 
 
-def longest(plan, out, alpha):
-    """The run of grains of 300 nodes that was sheared farthest."""
+def last_run(plan, out, alpha):
+    """Of the runs of grains of 300 nodes beyond strain 20 the one with the most grains, of several the one sheared farthest."""
     rows = [row for row in csv.DictReader(open(plan)) if row["scene"] == "shear" and row["alpha"] == alpha and
             row["nodes"] == "300" and (pathlib.Path(out) / row["name"] / "trajectory.h5").exists()]
     reached = {row["name"]: float(boba.open(f"{out}/{row['name']}").table["strain"][-1]) for row in rows}
-    best = max(rows, key=lambda row: (round(reached[row["name"]]), int(row["grains"])), default=None)
+    best = max(rows, key=lambda row: (reached[row["name"]] > 20, int(row["grains"]), reached[row["name"]]), default=None)
     return best and boba.open(f"{out}/{best['name']}")
 
 
@@ -37,16 +37,16 @@ def early_run(plan, out, alpha):
         folder = pathlib.Path(out) / row["name"]
         if (folder / "trajectory.h5").exists() and boba.open(folder).table["strain"][-1] >= 3.2:
             return boba.open(folder)
-    return longest(plan, out, alpha)
+    return last_run(plan, out, alpha)
 
 
 def main(plan, out, path):
     figure, axes = plt.subplots(3, 5, figsize=(12, 7.5))
     with tempfile.TemporaryDirectory() as folder:
         picture = f"{folder}/picture.png"
-        middle = "2" if longest(plan, out, "2") else "0"
+        middle = "2" if last_run(plan, out, "2") else "0"
         for row, alpha in zip(axes, ("-0.8", middle, "12")):
-            cylinder, run, early = boba.open(f"{out}/cylinder_a{alpha}"), longest(plan, out, alpha), early_run(
+            cylinder, run, early = boba.open(f"{out}/cylinder_a{alpha}"), last_run(plan, out, alpha), early_run(
                 plan, out, alpha)
             at_early, last = early.frames.at_strain(3.2), run.frames[-1]
             draw = [(lambda: pictures.grains_picture(cylinder.frames[-1], picture, (1.0, 0.0, 0.25), 260), "squeezed"),

@@ -101,18 +101,18 @@ def early_rows(table, results):
 
 
 def size_rows(table, results):
-    """mu and phi of packings of two sizes, at the rates that both were sheared at."""
+    """mu and phi of packings of several sizes, at the rates that they were sheared at."""
     for alpha, nu in POISSON.items():
-        for rate in sorted({row["rate"] for row in results.plan.values() if row["grains"] == "256"}, key=float):
+        for rate in sorted({row["rate"] for row in results.plan.values() if row["scene"] == "shear" and row["grains"] == "256"}, key=float):
             found = []
-            for grains in ("64", "256"):
+            for grains in ("64", "256", "1024"):
                 names = results.runs(scene="shear", alpha=alpha, nodes=300, grains=grains, rate=rate, remap="positions")
                 rows = [results.rows("early", n)[0] for n in names if results.rows("early", n)]
                 if rows:
                     mu = mean_of_runs([float(row["mu"]) for row in rows], float(rows[0]["mu_error"]))
                     phi = np.mean([float(row["phi"]) for row in rows])
                     found.append(f"{grains} grains: mu {value_text(*mu)}, phi {phi:.3f}")
-            if len(found) == 2:
+            if len(found) > 1:
                 table.text(f"size of the packing, nu = {nu:g}, 300 nodes, rate {rate}", "-", "; ".join(found), "1 < strain < 5")
 
 
@@ -132,9 +132,11 @@ def late_order(results, name):
 
 def order_rows(table, results):
     published = {"-0.8": "3 of 3 by strain 102.4", "0": "3 of 3", "2": "3 of 3", "5": "1 of 3", "12": "0 of 3"}
+    long = [row for row in results.plan.values() if row["scene"] == "shear" and float(row["strain"]) > 10]
+    kinds = sorted({(row["nodes"], row["rate"], row["grains"]) for row in long}, key=lambda k: (int(k[0]), -float(k[1]), -int(k[2])))
     for alpha, nu in POISSON.items():
-        for grains in sorted({r["grains"] for r in results.plan.values() if r["nodes"] == "300"}, key=int)[::-1]:
-            planned = results.runs(scene="shear", alpha=alpha, nodes=300, grains=grains, rate="2.048e-3")
+        for nodes, rate, grains in kinds:
+            planned = results.runs(scene="shear", alpha=alpha, nodes=nodes, grains=grains, rate=rate)
             if not planned:
                 continue
             names = [n for n in planned if results.reached(n) > 10]
@@ -142,9 +144,9 @@ def order_rows(table, results):
             detail = "; ".join(f"to strain {results.reached(n):.0f}: " + (
                 f"order from {onset(results, n):.0f}, share at the end {late_order(results, n):.2f}"
                 if onset(results, n) else f"none, share at the end {late_order(results, n):.2f}") for n in names)
-            table.text(f"runs that order, nu = {nu:g}, {grains} grains of 300 nodes", published[alpha],
+            table.text(f"runs that order, nu = {nu:g}, {grains} grains of {nodes} nodes, rate {rate}", published[alpha],
                        f"{len(ordered)} of {len(names)} ({detail})" if names else "not afforded",
-                       "small periodic boxes order more easily; rate 2.048e-3, 128 times the published one")
+                       f"{int(grains) ** (1 / 3):.0f} grains an edge (published: 10); rate {float(rate) / 1.6e-5:.0f} times the published one")
 
 
 def shape_rows(table, results):
