@@ -9,7 +9,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <map>
 #include <stdexcept>
 #include <tuple>
 
@@ -79,8 +78,7 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
 #pragma omp parallel for schedule(dynamic, 4) reduction(min : guaranteed) reduction(+ : searched)
   for (int p = 0; p < n_pairs; ++p) {
     ContactPair& pair = pairs_[p];
-    const bool usable = pair.searched && !grains_[pair.a].anew && !grains_[pair.b].anew;
-    double kept = usable ? guarantee(pair, box) : 0.0;
+    double kept = search_holds(pair) ? guarantee(pair, box) : 0.0;
     if (kept < diameter_ + reserve()) {
       search(pair, box, *network_of_grain[pair.a]);
       kept = guarantee(pair, box);
@@ -148,11 +146,12 @@ void ContactList::find_neighbours(const Box& box) {
     grain.neighbour_frame = grain.frame;
   }
   share_bounds(bounds);
+  const GrainNeighbours neighbours(std::move(bounds), box, reach_between() + neighbour_margin_);
   std::vector<ContactPair> found;
 #pragma omp parallel for schedule(dynamic, 8)
   for (const int g : layout_.grains()) {
     std::vector<ContactPair> of_grain = {ContactPair{g, g, {}}};
-    for (const auto& [other, image] : neighbour_grains(g, bounds, box, reach_between() + neighbour_margin_)) {
+    for (const auto& [other, image] : neighbours.of(g)) {
       if (other > g || (other == g && image > ImageVector{})) {
         of_grain.push_back({g, other, image});
       } else if (other < g && !layout_.holds(other)) { // the other's rank has it the same way round
@@ -164,17 +163,18 @@ void ContactList::find_neighbours(const Box& box) {
   }
   const auto key = [](const ContactPair& pair) { return std::make_tuple(pair.a, pair.b, pair.image); };
   std::sort(found.begin(), found.end(), [&](const ContactPair& x, const ContactPair& y) { return key(x) < key(y); });
-  std::map<std::tuple<int, int, ImageVector>, ContactPair> known;
-  for (ContactPair& pair : pairs_) {
-    known[key(pair)] = std::move(pair);
+  for (auto old = pairs_.begin(); ContactPair & pair : found) { // both are sorted
+    while (old != pairs_.end() && key(*old) < key(pair)) {
+      ++old;
+    }
+    if (built_ && old != pairs_.end() && key(*old) == key(pair)) {
+      pair = std::move(*old++);
+    }
   }
   pairs_ = std::move(found);
   sides_.assign(n_grains, {});
   for (int index = 0; index < static_cast<int>(pairs_.size()); ++index) {
-    ContactPair& pair = pairs_[index];
-    if (const auto old = built_ ? known.find(key(pair)) : known.end(); old != known.end()) {
-      pair = std::move(old->second);
-    }
+    const ContactPair& pair = pairs_[index];
     sides_[pair.a].push_back({index, 1.0});
     sides_[pair.b].push_back({index, -1.0});
   }
@@ -207,9 +207,26 @@ GrainFrame ContactList::second_frame(const ContactPair& pair, const Box& box) co
   return grains_[pair.b].frame.displaced(lattice_vector(box, pair.image));
 }
 
+/// False when places have changed in a way that the pair has to be searched anew: all of a grain's are other ones, or
+/// some have come into the gap that the search has found. (Where there is none, new places are looked up one by one.)
+bool ContactList::search_holds(const ContactPair& pair) const {
+  const TrackedGrain &a = grains_[pair.a], &b = grains_[pair.b];
+  if (!pair.searched || a.anew || b.anew) {
+    return false;
+  }
+  if (pair.inside() || pair.apart <= reach_between()) {
+    return true;
+  }
+  const Gap& gap = pair.gap;
+  return std::all_of(a.moved_to.begin(), a.moved_to.end(),
+                     [&](const Vector3& place) { return gap.normal.dot(pair.frame_a(place)) <= gap.last_of_a; }) &&
+         std::all_of(b.moved_to.begin(), b.moved_to.end(),
+                     [&](const Vector3& place) { return gap.normal.dot(pair.frame_b(place)) >= gap.first_of_b; });
+}
+
 /// Distance that the pair's unlisted nodes keep at present.
 ///
-/// A pair of nodes at the distance s >= diameter + skin when searched is now at least s (1 - e) - R - the two strays,
+/// A pair of nodes at the distance s >= apart when searched is now at least s (1 - e) - R - the two strays,
 /// with e the shortening of b's frame since then and R the largest relative displacement of the two frames where the
 /// grains meet.
 double ContactList::guarantee(const ContactPair& pair, const Box& box) const {
@@ -217,12 +234,12 @@ double ContactList::guarantee(const ContactPair& pair, const Box& box) const {
   const GrainFrame moved_b = second_frame(pair, box).after(pair.frame_b.inverse());
   const double e = shortening(moved_b.linear);
   if (pair.inside()) {
-    return reach_inside() * (1.0 - e) - 2.0 * a.stray;
+    return pair.apart * (1.0 - e) - 2.0 * a.stray;
   }
   const GrainFrame moved_a = a.frame.after(pair.frame_a.inverse());
   double slid = 0.0;
   pair.zone.for_each_corner([&](const Vector3& x) { slid = std::max(slid, (moved_a(x) - moved_b(x)).norm()); });
-  return reach_between() * (1.0 - e) - slid - a.stray - b.stray;
+  return pair.apart * (1.0 - e) - slid - a.stray - b.stray;
 }
 
 /// Radius that finds all nodes closer than the reach in space, where a frame has mapped the places that are searched.
@@ -235,25 +252,30 @@ void ContactList::search(ContactPair& pair, const Box& box, const NetworkData& n
   pair.frame_a = a.frame;
   pair.frame_b = second_frame(pair, box);
   pair.searched = true;
-  pair.changed = true;
+  pair.changed = pair.changed || !pair.candidates.empty();
   pair.candidates.clear();
   if (pair.inside()) {
+    pair.apart = reach_inside();
     add_pairs_inside(a.grid, network, reach_inside(), pair.candidates);
   } else {
+    pair.gap = gap_between(a.grid, pair.frame_a, b.grid, pair.frame_b);
+    pair.apart = std::max(reach_between(), pair.gap.width());
     const Bounds of_a = a.grid.bounds().widened(bounds_margin_).mapped(pair.frame_a);
     const Bounds of_b = b.grid.bounds().widened(bounds_margin_).mapped(pair.frame_b);
-    pair.bounds_a = of_a.widened(reach_between());
-    pair.bounds_b = of_b.widened(reach_between());
+    pair.bounds_a = of_a.widened(pair.apart);
+    pair.bounds_b = of_b.widened(pair.apart);
     pair.zone = {of_a.low.cwiseMax(pair.bounds_b.low), of_a.high.cwiseMin(pair.bounds_b.high)};
-    if ((pair.zone.high - pair.zone.low).minCoeff() > 0.0) {
+    const bool meet = (pair.zone.high - pair.zone.low).minCoeff() > 0.0;
+    if (meet && pair.apart <= reach_between()) {
       add_pairs_between(a.grid, b.grid, pair.frame_a.inverse().after(pair.frame_b), radius_in(pair.frame_a),
                         pair.candidates);
-    } else { // nothing to list
+    } else if (!meet) {
       pair.zone = of_a;
     }
   }
   strike_bonded(pair, pair.candidates, network);
   sort_pairs(pair.candidates, layout_.n_nodes(pair.a));
+  pair.changed = pair.changed || !pair.candidates.empty();
 }
 
 void ContactList::add_moved(ContactPair& pair, const NetworkData& network) {

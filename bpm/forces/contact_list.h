@@ -137,6 +137,7 @@ private:
                                   const NetworkData& network, NodePairs& pairs);
   static void strike_bonded(const ContactPair& pair, NodePairs& list, const NetworkData& network);
   static void add_candidates(ContactPair& pair, NodePairs& found, const NetworkData& network);
+  bool search_holds(const ContactPair& pair) const;
   double guarantee(const ContactPair& pair, const Box& box) const;
   void relist(int grain);
   std::vector<std::int32_t> nodes_in(int grain, std::vector<kernels::NodePair> ContactPair::*list) const;
@@ -182,7 +183,7 @@ private:
   Matrix3 cell_since_near_ = Matrix3::Identity();
   AlignedArray<float> place_; ///< X, lane layout, d
   std::vector<TrackedGrain> grains_;
-  std::vector<ContactPair> pairs_; ///< sorted by a, b, image
+  std::vector<ContactPair> pairs_;                           ///< sorted by a, b, image
   std::vector<std::vector<ContactSide>> sides_, near_sides_; ///< per grain
   const Distribution& distribution_;
   std::vector<int> ghosts_;

@@ -8,48 +8,6 @@ namespace boba {
 
 namespace {
 
-/// Integers n with |offset + n period| <= reach; {0, 0} along a direction that is not periodic and within reach.
-struct Interval {
-  int first, last;
-};
-
-Interval images_within(double offset, double period, double reach, bool periodic) {
-  if (!periodic) {
-    return std::abs(offset) <= reach ? Interval{0, 0} : Interval{0, -1};
-  }
-  return {static_cast<int>(std::ceil((-reach - offset) / period)),
-          static_cast<int>(std::floor((reach - offset) / period))};
-}
-
-} // namespace
-
-std::vector<NeighbourGrain> neighbour_grains(int g, std::span<const Bounds> bounds, const Box& box, double reach) {
-  std::vector<NeighbourGrain> found;
-  const Matrix3& h = box.h();
-  const auto& periodic = box.periodic();
-  for (int other = 0; other < static_cast<int>(bounds.size()); ++other) {
-    const Vector3 distance = 0.5 * (bounds[other].low + bounds[other].high - bounds[g].low - bounds[g].high);
-    const Vector3 touching =
-        (0.5 * (bounds[other].high - bounds[other].low + bounds[g].high - bounds[g].low)).array() + reach;
-    const Interval c = images_within(distance[2], h(2, 2), touching[2], periodic[2]);
-    for (int nc = c.first; nc <= c.last; ++nc) {
-      const Interval b = images_within(distance[1] + nc * h(1, 2), h(1, 1), touching[1], periodic[1]);
-      for (int nb = b.first; nb <= b.last; ++nb) {
-        const double x = distance[0] + nb * h(0, 1) + nc * h(0, 2);
-        const Interval a = images_within(x, h(0, 0), touching[0], periodic[0]);
-        for (int na = a.first; na <= a.last; ++na) {
-          if (other != g || na != 0 || nb != 0 || nc != 0) {
-            found.push_back({other, {na, nb, nc}});
-          }
-        }
-      }
-    }
-  }
-  return found;
-}
-
-namespace {
-
 /// First and last cell along an axis that a point's neighbours can be in, within the grid.
 struct CellRange {
   int from[3], to[3];
@@ -110,6 +68,18 @@ private:
 };
 
 } // namespace
+
+Gap gap_between(const GrainGrid& a, const GrainFrame& frame_a, const GrainGrid& b, const GrainFrame& frame_b) {
+  constexpr double rounding = 1e-4; // of a place's component in single precision, up to hundreds of d from the centre
+  const Vector3 line = frame_b.centre - frame_a.centre;
+  const double distance = line.norm();
+  if (!(distance > 0.0)) {
+    return {};
+  }
+  const Vector3 n = line / distance;
+  return {n, n.dot(frame_a.centre) + a.extent(frame_a.linear.transpose() * n) + rounding,
+          n.dot(frame_b.centre) - b.extent(-(frame_b.linear.transpose() * n)) - rounding};
+}
 
 void add_pairs_between(const GrainGrid& a, const GrainGrid& b, const GrainFrame& b_to_a, double radius,
                        std::vector<kernels::NodePair>& pairs) {

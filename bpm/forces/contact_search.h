@@ -6,29 +6,22 @@
 #include "bpm/forces/network_data.h"
 #include "bpm/packing/box.h"
 
-#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace boba {
 
-/// A lattice translation x + h n.
-struct ImageVector {
-  int a = 0, b = 0, c = 0;
-  auto operator<=>(const ImageVector&) const = default;
+/// Two planes between grains a and b, across the line of their centres: no place of a has x . normal above `last_of_a`
+/// where its frame puts it, none of b below `first_of_b`.
+struct Gap {
+  Vector3 normal = Vector3::Zero();
+  double last_of_a = 0.0, first_of_b = 0.0;
+  /// Distance that the places keep, d; what is not positive says nothing of the grains.
+  double width() const { return first_of_b - last_of_a; }
 };
 
-/// Grain `other`, displaced by the lattice vector `image`, may touch the grain whose list this is in.
-struct NeighbourGrain {
-  int other = 0;
-  ImageVector image;
-};
-
-/// All (other grain, image) whose bounds come within `reach` of grain g's, the grain's own images included and the
-/// grain itself not. Exact for any cell, also one smaller than a grain: the integer intervals are solved for axis by
-/// axis. Sorted by other.
-std::vector<NeighbourGrain> neighbour_grains(int g, std::span<const Bounds> bounds, const Box& box, double reach);
+Gap gap_between(const GrainGrid& a, const GrainFrame& frame_a, const GrainGrid& b, const GrainFrame& frame_b);
 
 /// Adds the pairs (node i of `a`, node j of `b`) closer than `radius`, measured where a's nodes are sorted; `b_to_a`
 /// brings b's there. Places inserted later count too, so that a pair may be added more than once. The radius must not

@@ -19,6 +19,11 @@ kernels::ContactCandidates ForceField::seen_by_kernels(const ContactPair& pair,
 }
 
 void ForceField::find_near(ContactPair& pair, const Box& box, double reach) {
+  pair.touches.clear(); // a pair without near candidates is not evaluated
+  if (pair.candidates.empty()) {
+    pair.near.clear();
+    return;
+  }
   pair.near.resize(pair.candidates.size() + 1);
   pair.near.resize(table_.near_candidates(seen_by_kernels(pair, pair.candidates, box, Matrix3::Zero()), reach * reach,
                                           pair.near.data()));
@@ -29,7 +34,6 @@ void ForceField::find_near(ContactPair& pair, const Box& box, double reach) {
                    std::back_inserter(all));
     pair.near.assign(all.begin(), all.end());
   }
-  pair.touches.clear(); // a pair without near candidates is not evaluated
 }
 
 void ForceField::contacts_between(ContactPair& pair, const Box& box, const Evaluation& what) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/forces/grain_grid.h"
 
+#include <Eigen/Core>
+
 namespace boba {
 
 GrainGrid::GrainGrid(std::span<const Vector3> nodes, const Bounds& bounds, double reach)
@@ -64,6 +66,19 @@ void GrainGrid::insert(std::int32_t node, const Vector3& position) {
   inserted_.push_back({position, node, last});
   last = static_cast<std::int32_t>(inserted_.size()) - 1;
   mark_around(c[0], c[1], c[2]);
+}
+
+float GrainGrid::extent(const Vector3& direction) const {
+  const Eigen::Vector3f d = direction.cast<float>();
+  const auto n = static_cast<Eigen::Index>(x_.size());
+  const auto column = [n](const std::vector<float>& values) {
+    return Eigen::Map<const Eigen::ArrayXf>(values.data(), n);
+  };
+  float largest = (d[0] * column(x_) + d[1] * column(y_) + d[2] * column(z_)).maxCoeff();
+  for (const Inserted& inserted : inserted_) {
+    largest = std::max(largest, d.dot(inserted.position.cast<float>()));
+  }
+  return largest;
 }
 
 bool GrainGrid::near(const Vector3& x) const {

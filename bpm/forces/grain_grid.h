@@ -66,6 +66,9 @@ public:
     }
   }
 
+  /// Largest X . direction of all places, inserted ones included; in single precision.
+  float extent(const Vector3& direction) const;
+
   std::int32_t node(std::int32_t place) const { return node_[place]; }
   Vector3 position(std::int32_t place) const { return {x_[place], y_[place], z_[place]}; }
   kernels::SortedNodes columns() const { return {x_.data(), y_.data(), z_.data()}; }

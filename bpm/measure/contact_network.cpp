@@ -2,6 +2,7 @@
 #include "bpm/measure/contact_network.h"
 
 #include "bpm/forces/contact_search.h"
+#include "bpm/forces/grain_neighbours.h"
 #include "bpm/laws/contact.h"
 #include "bpm/measure/footprint.h"
 #include "bpm/measure/parallel_loop.h"
@@ -37,7 +38,8 @@ public:
   NetworkBuilder(const Box& box, const GrainNodes& grains, const Material& material, const DealtItems& items)
       : box_(box), grains_(grains), material_(material), bounds_(bounds_of(grains)), centres_(grain_centres(grains)),
         neighbours_(grains.n_grains()), grids_(grains.n_grains()) {
-    parallel_loop(items, [&](std::int64_t g) { neighbours_[g] = first_side_neighbours(static_cast<int>(g)); });
+    const GrainNeighbours all(bounds_, box, material.diameter);
+    parallel_loop(items, [&](std::int64_t g) { neighbours_[g] = first_side_neighbours(all, static_cast<int>(g)); });
     std::vector<char> needed(grains.n_grains(), 0);
     for (std::int64_t k = 0; k < items.n_own(); ++k) {
       for (const NeighbourGrain& neighbour : neighbours_[items.own(k)]) {
@@ -70,8 +72,8 @@ public:
 
 private:
   /// By grain and image.
-  std::vector<NeighbourGrain> first_side_neighbours(int grain) const {
-    auto neighbours = neighbour_grains(grain, bounds_, box_, material_.diameter);
+  static std::vector<NeighbourGrain> first_side_neighbours(const GrainNeighbours& all, int grain) {
+    auto neighbours = all.of(grain);
     std::erase_if(neighbours, [&](const NeighbourGrain& neighbour) { return !is_first_side(grain, neighbour); });
     std::sort(neighbours.begin(), neighbours.end(), [](const NeighbourGrain& a, const NeighbourGrain& b) {
       return std::tie(a.other, a.image) < std::tie(b.other, b.image);
