@@ -32,7 +32,8 @@ class Results:
         return [np.array([float(row[column]) for row in rows]) for column in names]
 
     def runs(self, **equal):
-        """Names of the planned runs with these parameters, in the plan's order."""
+        """Names of the planned runs with these parameters, in the plan's order; of grains cut out of the bulk unless `surface` says else."""
+        equal = {"surface": ""} | equal
         return [name for name, row in self.plan.items() if all(row[key] == str(value) for key, value in equal.items())]
 
     def peer(self, rate):
@@ -320,18 +321,19 @@ def figure_s4(results, folder):
 
 
 def reduction_figure(results, folder):
-    """Order at nu = -0.5: one panel for each size, resolution and rate, a curve for each seed."""
+    """Order at nu = -0.5: one panel for each size, resolution, rate and surface, a curve for each seed."""
     kinds = {}
-    for name in results.runs(scene="shear", alpha="12", remap="positions"):
-        row = results.plan[name]
-        if results.reached(name) > 10 and row["grains"] != "27":
-            kinds.setdefault((row["grains"], row["nodes"], row["rate"]), []).append(name)
+    for surface in ("", "wall"):
+        for name in results.runs(scene="shear", alpha="12", remap="positions", surface=surface):
+            row = results.plan[name]
+            if results.reached(name) > 10 and row["grains"] != "27":
+                kinds.setdefault((row["grains"], row["nodes"], row["rate"], surface), []).append(name)
     panels = max(len(kinds), 1)
     figure, axes = plt.subplots(panels, 1, figsize=(6, 0.6 + 1.3 * panels), sharex=True, sharey=True, squeeze=False)
-    for axis, ((grains, nodes, rate), names) in zip(axes[:, 0], kinds.items()):
+    for axis, ((grains, nodes, rate, surface), names) in zip(axes[:, 0], kinds.items()):
         for name, shade in zip(names, plt.cm.inferno(np.linspace(0.15, 0.75, len(names)))):
             order_curve(results, axis, name, color=shade, lw=1.2)
-        axis.set_title(f"{grains} grains of {nodes} nodes, rate {rate}", fontsize=8, loc="left")
+        axis.set_title(f"{grains} {'smooth ' if surface else ''}grains of {nodes} nodes, rate {rate}", fontsize=8, loc="left")
         axis.set_ylabel("ordered share", fontsize=8)
     axes[-1, 0].set_xlabel("strain (nu = -0.5)")
     save(figure, folder, "reduction")

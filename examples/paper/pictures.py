@@ -24,7 +24,7 @@ from figures import POISSON
 def last_run(plan, out, alpha):
     """Of the runs of grains of 300 nodes beyond strain 20 the one with the most grains, of several the one sheared farthest."""
     rows = [row for row in csv.DictReader(open(plan)) if row["scene"] == "shear" and row["alpha"] == alpha and
-            row["nodes"] == "300" and (pathlib.Path(out) / row["name"] / "trajectory.h5").exists()]
+            row["nodes"] == "300" and not row["surface"] and (pathlib.Path(out) / row["name"] / "trajectory.h5").exists()]
     reached = {row["name"]: float(boba.open(f"{out}/{row['name']}").table["strain"][-1]) for row in rows}
     best = max(rows, key=lambda row: (reached[row["name"]] > 20, int(row["grains"]), reached[row["name"]]), default=None)
     return best and boba.open(f"{out}/{best['name']}")
@@ -32,7 +32,7 @@ def last_run(plan, out, alpha):
 
 def early_run(plan, out, alpha):
     """A run at strain 3.2: of the published resolution where there is one."""
-    rows = [row for row in csv.DictReader(open(plan)) if row["scene"] == "shear" and row["alpha"] == alpha]
+    rows = [row for row in csv.DictReader(open(plan)) if row["scene"] == "shear" and row["alpha"] == alpha and not row["surface"]]
     for row in sorted(rows, key=lambda row: (-int(row["nodes"]), -int(row["grains"]))):
         folder = pathlib.Path(out) / row["name"]
         if (folder / "trajectory.h5").exists() and boba.open(folder).table["strain"][-1] >= 3.2:

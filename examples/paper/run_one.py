@@ -11,6 +11,8 @@ def settings(row):
     values = {"seed": row["seed"], "species.0.count": row["grains"]}
     if row["scene"] != "spheres":
         values |= {"template.0.nodes": row["nodes"], "species.0.alpha": row["alpha"]}
+    if row["surface"]:
+        values["template.0.surface"] = f'"{row["surface"]}"'
     if row["rate"]:
         values |= {"stage.shear.rate": row["rate"], "stage.shear.strain": row["strain"]}
     if row["every"]:

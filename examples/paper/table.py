@@ -133,10 +133,11 @@ def late_order(results, name):
 def order_rows(table, results):
     published = {"-0.8": "3 of 3 by strain 102.4", "0": "3 of 3", "2": "3 of 3", "5": "1 of 3", "12": "0 of 3"}
     long = [row for row in results.plan.values() if row["scene"] == "shear" and float(row["strain"]) > 10]
-    kinds = sorted({(row["nodes"], row["rate"], row["grains"]) for row in long}, key=lambda k: (int(k[0]), -float(k[1]), -int(k[2])))
+    kinds = sorted({(row["surface"], row["nodes"], row["rate"], row["grains"]) for row in long},
+                   key=lambda kind: (kind[0], int(kind[1]), -float(kind[2]), -int(kind[3])))
     for alpha, nu in POISSON.items():
-        for nodes, rate, grains in kinds:
-            planned = results.runs(scene="shear", alpha=alpha, nodes=nodes, grains=grains, rate=rate)
+        for surface, nodes, rate, grains in kinds:
+            planned = results.runs(scene="shear", alpha=alpha, nodes=nodes, grains=grains, rate=rate, surface=surface)
             if not planned:
                 continue
             names = [n for n in planned if results.reached(n) > 10]
@@ -144,7 +145,7 @@ def order_rows(table, results):
             detail = "; ".join(f"to strain {results.reached(n):.0f}: " + (
                 f"order from {onset(results, n):.0f}, share at the end {late_order(results, n):.2f}"
                 if onset(results, n) else f"none, share at the end {late_order(results, n):.2f}") for n in names)
-            table.text(f"runs that order, nu = {nu:g}, {grains} grains of {nodes} nodes, rate {rate}", published[alpha],
+            table.text(f"runs that order, nu = {nu:g}, {grains} {'smooth ' if surface else ''}grains of {nodes} nodes, rate {rate}", published[alpha],
                        f"{len(ordered)} of {len(names)} ({detail})" if names else "not afforded",
                        f"{int(grains) ** (1 / 3):.0f} grains an edge (published: 10); rate {float(rate) / 1.6e-5:.0f} times the published one")
 
@@ -188,16 +189,17 @@ def shape_rows(table, results):
 
 def light_rows(table, results):
     for alpha, nu in POISSON.items():
-        names = [n for n in results.runs(scene="light", alpha=alpha) if results.rows("early", n)]
-        rows = [results.rows("early", n)[0] for n in names]
-        if not rows:
-            continue
-        number, reached = float(rows[0]["inertial_number"]), rows[0]["to_strain"]
-        why = f"I = {number:.2g}, to strain {reached}; rough grains of 300 nodes have friction"
-        what = f"P~ = 1e-4, nu = {nu:g}, 300 nodes"
-        table.number(f"nearly rigid grains, {what}: mu", 0.1, [float(r["mu"]) for r in rows], float(rows[0]["mu_error"]), why)
-        table.number("the same: phi", 0.64, [float(r["phi"]) for r in rows if r["phi"]], float(rows[0]["phi_error"] or "nan"), why)
-        table.text("the same: crystal", "none", f"share {late_order(results, names[0]):.2f} at the end", "far shorter")
+        for surface in ("", "wall"):
+            names = [n for n in results.runs(scene="light", alpha=alpha, surface=surface) if results.rows("early", n)]
+            rows = [results.rows("early", n)[0] for n in names]
+            if not rows:
+                continue
+            number, reached = float(rows[0]["inertial_number"]), rows[0]["to_strain"]
+            why = f"I = {number:.2g}, to strain {reached}; {'grains relaxed in a smooth wall' if surface else 'rough grains of 300 nodes have friction'}"
+            what = f"P~ = 1e-4, nu = {nu:g}, 300 nodes{', smooth' if surface else ''}"
+            table.number(f"nearly rigid grains, {what}: mu", 0.1, [float(r["mu"]) for r in rows], float(rows[0]["mu_error"]), why)
+            table.number("the same: phi", 0.64, [float(r["phi"]) for r in rows if r["phi"]], float(rows[0]["phi_error"] or "nan"), why)
+            table.text("the same: crystal", "none", f"share {late_order(results, names[0]):.2f} at the end", "far shorter")
 
 
 def slow_limit(number, mu, error):
