@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/grain/template_file.h"
 
+#include "bpm/hdf5/hdf5_file.h"
+
 #include <cstdint>
 #include <fmt/format.h>
 #include <fstream>
-#include <hdf5.h>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <unistd.h>
@@ -16,68 +18,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An HDF5 identifier that closes itself.
-class Handle {
-public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {
-    if (id_ < 0) {
-      throw std::runtime_error("HDF5 call failed");
-    }
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  ~Handle() { close_(id_); }
-  operator hid_t() const { return id_; } // NOLINT: used as an identifier
+constexpr const char* specification = "specification_text";
+/// Taken on the disk beyond the numbers, bytes: HDF5's own and the text.
+constexpr std::uint64_t room_for_the_rest = 1 << 16;
 
-private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-void require(bool ok, const char* what) {
-  if (!ok) {
-    throw std::runtime_error(what);
-  }
-}
-
-/// Keeps HDF5 from printing its error stack: a damaged cache file is an ordinary event here.
-class QuietErrors {
-public:
-  QuietErrors() {
-    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-  QuietErrors(const QuietErrors&) = delete;
-  QuietErrors& operator=(const QuietErrors&) = delete;
-
-private:
-  H5E_auto2_t function_ = nullptr;
-  void* data_ = nullptr;
-};
-
-/// The template as flat arrays, the way it lies in the file.
+/// The template's numbers as flat arrays, the way they lie in the file.
 struct Flat {
-  std::vector<char> text;
-  std::vector<double> position; // 3 n
-  std::vector<int> ends;        // 2 per bond
+  std::vector<double> position;   // 3 n
+  std::vector<std::int32_t> ends; // 2 per bond
   std::vector<double> r0;
   std::vector<double> period; // 3 or none
   std::vector<double> reference_volume;
 
   template <class Visit> void visit(Visit&& use) {
-    use("specification", text, H5T_STD_I8LE, H5T_NATIVE_CHAR, "");
-    use("position", position, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, "d");
-    use("bond_nodes", ends, H5T_STD_I32LE, H5T_NATIVE_INT, "");
-    use("bond_r0", r0, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, "d");
-    use("period", period, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, "d");
-    use("reference_volume", reference_volume, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, "d^3");
+    use("position", position, "d");
+    use("bond_nodes", ends, "");
+    use("bond_r0", r0, "d");
+    use("period", period, "d");
+    use("reference_volume", reference_volume, "d^3");
   }
 };
 
-Flat flatten(const GrainTemplate& grain, const std::string& text) {
+Flat flatten(const GrainTemplate& grain) {
   Flat flat;
-  flat.text.assign(text.begin(), text.end());
   for (const auto& x : grain.position) {
     flat.position.insert(flat.position.end(), {x.x(), x.y(), x.z()});
   }
@@ -107,39 +70,29 @@ GrainTemplate unflatten(const Flat& flat) {
   return grain;
 }
 
-void write_text_attribute(hid_t object, const char* name, const std::string& value) {
-  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  require(H5Tset_size(type, value.size() + 1) >= 0, "string type");
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  require(H5Awrite(attribute, type, value.c_str()) >= 0, "attribute");
-}
-
-void write_flat(const fs::path& file, Flat flat) {
-  const Handle h5(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-  flat.visit([&](const char* name, auto& data, hid_t file_type, hid_t memory_type, const char* unit) {
-    const hsize_t length = data.size();
-    const Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
-    const Handle set(H5Dcreate2(h5, name, file_type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
-    if (*unit) {
-      write_text_attribute(set, "boba_unit", unit);
+void write_flat(const fs::path& path, Flat flat, const std::string& text) {
+  hdf5::File file = hdf5::File::create(path);
+  std::uint64_t n_bytes = room_for_the_rest + text.size();
+  flat.visit([&](const char*, const auto& data, const char*) { n_bytes += data.size() * sizeof(data[0]); });
+  file.reserve(n_bytes);
+  file.write_text(specification, text);
+  flat.visit([&]<class T>(const char* name, const std::vector<T>& data, const std::string& unit) {
+    file.write(name, std::span<const T>(data));
+    if (!unit.empty()) {
+      file.set_attribute(name, "boba_unit", unit);
     }
-    require(data.empty() || H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) >= 0, name);
   });
+  file.close();
 }
 
-Flat read_flat(const fs::path& file) {
-  const Handle h5(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+/// Nothing where the file holds another text.
+std::optional<Flat> read_flat(const fs::path& path, const std::string& text) {
+  const hdf5::File file = hdf5::File::open(path, false);
+  if (file.read_text(specification) != text) {
+    return std::nullopt;
+  }
   Flat flat;
-  flat.visit([&](const char* name, auto& data, hid_t, hid_t memory_type, const char*) {
-    const Handle set(H5Dopen2(h5, name, H5P_DEFAULT), H5Dclose);
-    const Handle space(H5Dget_space(set), H5Sclose);
-    hsize_t length = 0;
-    require(H5Sget_simple_extent_ndims(space) == 1, "rank");
-    H5Sget_simple_extent_dims(space, &length, nullptr);
-    data.resize(length);
-    require(length == 0 || H5Dread(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()) >= 0, name);
-  });
+  flat.visit([&]<class T>(const char* name, std::vector<T>& data, const char*) { data = file.read<T>(name); });
   return flat;
 }
 
@@ -167,7 +120,9 @@ void append_seal(const fs::path& file) {
   std::ofstream out(file, std::ios::binary | std::ios::app);
   out << seal;
   out.close();
-  require(out.good(), "seal");
+  if (!out.good()) {
+    throw std::runtime_error("its checksum cannot be written");
+  }
 }
 
 bool seal_is_right(const fs::path& file) {
@@ -185,8 +140,7 @@ void write_template(const fs::path& file, const GrainTemplate& grain, const std:
   const fs::path beside = fmt::format("{}.{}.part", file.string(), getpid());
   std::error_code ignored;
   try {
-    const QuietErrors quiet;
-    write_flat(beside, flatten(grain, text));
+    write_flat(beside, flatten(grain), text);
     append_seal(beside);
     fs::rename(beside, file);
   } catch (const std::exception& error) {
@@ -201,12 +155,8 @@ std::optional<GrainTemplate> read_template(const fs::path& file, const std::stri
     return std::nullopt;
   }
   try {
-    const QuietErrors quiet;
-    const Flat flat = read_flat(file);
-    if (std::string(flat.text.begin(), flat.text.end()) != text) {
-      return std::nullopt;
-    }
-    return unflatten(flat);
+    const std::optional<Flat> flat = read_flat(file, text);
+    return flat ? std::optional(unflatten(*flat)) : std::nullopt;
   } catch (const std::exception&) {
     return std::nullopt; // damaged or foreign: the caller builds it again
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/io/hdf5_file.h"
+#include "bpm/hdf5/hdf5_file.h"
 
-#include "bpm/io/hdf5_room.h"
+#include "bpm/hdf5/hdf5_room.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-// Thin handles around the HDF5 C API; included by the sources of this folder only, so that no other file needs
-// <hdf5.h>.
+// Thin handles around the HDF5 C API, for what reads and writes files of it: trajectories (io) and templates (grain).
 
 #include <cstdint>
 #include <filesystem>
@@ -48,7 +47,7 @@ template <> inline hid_t type_of<std::int32_t>() {
   return H5T_NATIVE_INT32;
 }
 
-/// An open file and the few operations that the trajectory needs. Every failure is a std::runtime_error with the file's
+/// An open file and the few operations that Boba's files need. Every failure is a std::runtime_error with the file's
 /// name, what was being done, and HDF5's own reason.
 class File {
 public:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rooms: chunks that HDF5 gives a place and an entry in its index, while their values come from elsewhere.
-#include "bpm/io/hdf5_room.h"
+#include "bpm/hdf5/hdf5_room.h"
 
-#include "bpm/io/hdf5_file.h"
+#include "bpm/hdf5/hdf5_file.h"
 
 #include <cstdlib>
 #include <fmt/format.h>
