@@ -144,6 +144,8 @@ void ContactList::find_neighbours(const Box& box) {
     TrackedGrain& grain = grains_[g];
     bounds[g] = grain.grid.bounds().widened(bounds_margin_).mapped(grain.frame).widened(grain.stray);
     grain.neighbour_frame = grain.frame;
+    grain.neighbour_bounds = bounds[g];
+    grain.outgrown = false;
   }
   share_bounds(bounds);
   const GrainNeighbours neighbours(std::move(bounds), box, reach_between() + neighbour_margin_);
@@ -187,12 +189,17 @@ void ContactList::find_neighbours(const Box& box) {
 
 /// Distance that the nodes of grains which are not neighbours keep: they were farther apart than the reach when the
 /// neighbours were found, the cell may have shortened that, and each grain may have moved beyond the cell's motion.
+/// Nothing when a grain has a place that was not in its bounds then: a node that left, while the grain as a whole
+/// stayed.
 double ContactList::neighbour_guarantee(const Box& box) const {
   const Matrix3& cell = cell_since_neighbours_;
   const GrainFrame with_cell = {cell, box.origin() - cell * box.origin()};
   double farthest = 0.0;
   for (const int g : layout_.grains()) {
     const TrackedGrain& grain = grains_[g];
+    if (grain.outgrown) {
+      farthest = std::numeric_limits<double>::max();
+    }
     const GrainFrame carried = with_cell.after(grain.neighbour_frame);
     grain.grid.bounds().widened(bounds_margin_).for_each_corner([&](const Vector3& x) {
       farthest = std::max(farthest, (grain.frame(x) - carried(x)).norm() + grain.stray);

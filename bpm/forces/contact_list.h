@@ -87,6 +87,8 @@ private:
   struct TrackedGrain {
     GrainFrame frame;                              ///< from noted places to space
     GrainFrame neighbour_frame;                    ///< the same when the grain's neighbours were found
+    Bounds neighbour_bounds;                       ///< in space, at that time, of all places that it may have
+    bool outgrown = false;                         ///< a place is outside them
     GrainGrid grid;                                ///< over the noted places, new ones inserted
     Matrix3 inverse_moments = Matrix3::Identity(); ///< of sum X (x) X over the nodes as first noted
     double stray = 0.0;                            ///< largest distance of a node from where the frame puts it, d
@@ -163,6 +165,7 @@ private:
   kernels::LaneFrames fit_frames(int b, const LaneState& state);
   void note_all(int grain, const LaneState& state);
   bool note_moved(int grain, const LaneState& state);
+  static void compare_with_neighbour_bounds(TrackedGrain& grain, const Vector3& place);
   bool out_of_shape(const TrackedGrain& grain, int n_nodes) const;
   Vector3 place(int grain, int node) const;
 

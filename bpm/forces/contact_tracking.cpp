@@ -146,6 +146,7 @@ void ContactList::note_all(int g, const LaneState& state) {
       places[node][c] = place_[at + c * stride];
     }
     bounds.include(places[node]);
+    compare_with_neighbour_bounds(grain, places[node]);
     moments += places[node] * places[node].transpose();
   }
   // A flat or tiny grain has no full set of moments: its frame then only turns and shears where it can.
@@ -157,6 +158,10 @@ void ContactList::note_all(int g, const LaneState& state) {
   grain.moved_to.clear();
   grain.n_moved = 0;
   grain.anew = true;
+}
+
+void ContactList::compare_with_neighbour_bounds(TrackedGrain& grain, const Vector3& place) {
+  grain.outgrown = grain.outgrown || !grain.neighbour_bounds.contains(grain.neighbour_frame(place));
 }
 
 /// Gives the nodes that strayed far the places where they are. False when one has left the grain's bounds.
@@ -176,6 +181,7 @@ bool ContactList::note_moved(int g, const LaneState& state) {
     }
     grain.moved_to.push_back(place(g, node));
     grain.grid.insert(node, grain.moved_to.back());
+    compare_with_neighbour_bounds(grain, grain.moved_to.back());
   }
   grain.n_moved += static_cast<int>(grain.moved.size());
   return true;

@@ -79,6 +79,10 @@ def compaction_figure(results, folder):
             phi, pressure, ratio = results.columns("compaction", name, "phi", "P", "phi_reference")
             left.plot(phi, pressure, color=colour, lw=1, label=None if k else label(alpha))
             right.plot(ratio, pressure, color=colour, lw=1)
+        for name in results.runs(scene="compaction", alpha=alpha, surface="wall"):
+            phi, pressure, ratio = results.columns("compaction", name, "phi", "P", "phi_reference")
+            left.plot(phi, pressure, "--", color=colour, lw=1, label=f"{label(alpha)}, smooth")
+            right.plot(ratio, pressure, "--", color=colour, lw=1)
     left.set_xlabel(r"packing fraction $\phi$ (Monte Carlo)")
     right.set_xlabel("undeformed hull volume of all grains / volume of the cell")
     for axes in (left, right):
@@ -266,11 +270,11 @@ def figure_s3(results, folder):
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8))
     size = main_size(results)
     for alpha, colour in COLOURS.items():
-        for nodes, grains, remap, style in (("300", size, "positions", "o-"), ("300", size, "velocities", "x"),
-                                            ("300", "256", "positions", "D"), ("5137", "16", "positions", "s"),
-                                            ("5137", "64", "positions", "P")):
+        for nodes, grains, remap, surface, style in (("300", size, "positions", "", "o-"), ("300", size, "velocities", "", "x"),
+                                                     ("300", "256", "positions", "", "D"), ("300", "64", "positions", "wall", "v:"),
+                                                     ("5137", "16", "positions", "", "s"), ("5137", "64", "positions", "", "P")):
             points = {}
-            for name in results.runs(scene="shear", alpha=alpha, nodes=nodes, grains=grains, remap=remap):
+            for name in results.runs(scene="shear", alpha=alpha, nodes=nodes, grains=grains, remap=remap, surface=surface):
                 for row in results.rows("early", name):
                     points.setdefault(results.plan[name]["rate"], []).append(row)
             curve = []
@@ -286,7 +290,7 @@ def figure_s3(results, folder):
                 right.plot(number, phi, style, color=colour, ms=4, lw=1)
     left.set_ylabel(r"$\mu$ (1 < strain < 5)")
     right.set_ylabel(r"$\phi$")
-    left.set_title(f"300 nodes: circles {size} grains (crosses: remap velocities), diamonds 256;\n5137 nodes: squares 16 grains, plus 64", fontsize=8, loc="left")
+    left.set_title(f"300 nodes: circles {size} grains (crosses: remap velocities), diamonds 256, triangles smooth grains;\n5137 nodes: squares 16 grains, plus 64", fontsize=8, loc="left")
     for axes in (left, right):
         axes.set_xscale("log")
         axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))

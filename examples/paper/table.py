@@ -65,24 +65,29 @@ def jamming(results, name, low, high):
 
 
 def compaction_rows(table, results):
-    names = [n for n in results.runs(scene="compaction") if at_pressure(results, n, 1e-2)]
-    fits = [fit for fit in (jamming(results, n, 2e-3, 1.2e-2) for n in names) if fit]
-    table.number("phi_c, from P~^(2/3) in 2e-3 .. 1.2e-2, all nu", 0.6, [f[0] for f in fits], np.nan,
-                 "300 nodes: rough grains touch at outer nodes while phi counts hulls; ramp of finite rate")
-    table.number("exponent of P~ against phi - phi_c (phi_c free)", 1.5, [f[1] for f in fits], np.nan,
-                 "depends on the range of the fit; the ramp's own pressure below 1e-3")
-    soft = results.runs(scene="compaction", alpha="-0.8")
-    for pressure, published in ((1e-2, 0.68), (0.5, 0.99)):
-        values = [v for v in (at_pressure(results, n, pressure) for n in soft) if v]
-        table.number(f"phi at P~ = {pressure:g}, nu = 0.4", published, values, 0.001,
-                     "resolution: contacts are soft over d/2, and R is 3.9 d instead of 10 d")
+    for surface, kind, why in (("", "300 nodes", "300 nodes: rough grains touch at outer nodes while phi counts hulls; ramp of finite rate"),
+                               ("wall", "300 nodes, smooth", "300 nodes; ramp of finite rate")):
+        names = [n for n in results.runs(scene="compaction", surface=surface) if at_pressure(results, n, 1e-2)]
+        if surface and not names:
+            continue
+        fits = [fit for fit in (jamming(results, n, 2e-3, 1.2e-2) for n in names) if fit]
+        table.number(f"phi_c, from P~^(2/3) in 2e-3 .. 1.2e-2, all nu, {kind}", 0.6, [f[0] for f in fits], np.nan, why)
+        table.number(f"exponent of P~ against phi - phi_c (phi_c free), {kind}", 1.5, [f[1] for f in fits], np.nan,
+                     "depends on the range of the fit; the ramp's own pressure below 1e-3")
+        soft = results.runs(scene="compaction", alpha="-0.8", surface=surface)
+        for pressure, published in ((1e-2, 0.68), (0.5, 0.99)):
+            values = [v for v in (at_pressure(results, n, pressure) for n in soft) if v]
+            table.number(f"phi at P~ = {pressure:g}, nu = 0.4, {kind}", published, values, 0.001,
+                         "resolution: contacts are soft over d/2, and R is 3.9 d instead of 10 d")
 
 
 def early_rows(table, results):
     for alpha, published, mu in (("-0.8", 0.87, 0.17), ("12", 0.85, 0.10)):
-        for nodes in (300, 5137):
-            slowest = [n for n in results.runs(scene="shear", alpha=alpha, nodes=nodes, remap="positions")
+        for nodes, surface in ((300, ""), (300, "wall"), (5137, "")):
+            slowest = [n for n in results.runs(scene="shear", alpha=alpha, nodes=nodes, remap="positions", surface=surface)
                        if results.rows("early", n)]
+            if surface and not slowest:
+                continue
             slowest = sorted(slowest, key=lambda n: (float(results.plan[n]["rate"]), -int(results.plan[n]["grains"])))
             slowest = [n for n in slowest if all(results.plan[n][key] == results.plan[slowest[0]][key]
                                                  for key in ("rate", "grains"))]
@@ -90,7 +95,7 @@ def early_rows(table, results):
             rate, grains = (results.plan[slowest[0]][key] if slowest else "-" for key in ("rate", "grains"))
             why = "resolution (see above) and rate" if nodes == 300 else f"{grains} grains, and the rate"
             number = f"{float(rows[0]['inertial_number']):.2g}" if rows else "-"
-            nu = f"nu = {POISSON[alpha]:g}, {nodes} nodes"
+            nu = f"nu = {POISSON[alpha]:g}, {nodes} nodes{', smooth' if surface else ''}"
             table.number(f"phi before shear, P~ = 0.1, {nu}", published,
                          [float(r["phi_start"]) for r in rows if r["phi_start"]], 0.0015, why)
             table.number(f"phi, early shear, {nu}", published, [float(r["phi"]) for r in rows if r["phi"]],

@@ -4,8 +4,10 @@
 #include "bpm/dynamics/stepper.h"
 #include "tests/support/small_packings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numeric>
 #include <utility>
 
 namespace boba::test {
@@ -198,6 +200,42 @@ TEST(Runs, LongLivedContactListsMissNothing) {
     EXPECT_LT(lasting.forces().contact_list().counts().grains, 300 * 9);
     expect_same_bits(end[0], end[1]);
   }
+}
+
+// A node that leaves its grain, which stays where it is, meets a grain that was nobody's neighbour.
+TEST(Runs, ANodeFarFromItsGrainIsNotMissed) {
+  Packing packing = small_packing({.box = Box({0, 0, 0}, {60, 60, 60}),
+                                   .n_grains = 2,
+                                   .radius = 5.0,
+                                   .alpha = 0.0,
+                                   .jitter = 0.0,
+                                   .speed = 0.0,
+                                   .least_distance = 12.0});
+  const std::vector<std::int64_t> first_node = packing.first_nodes();
+  for (int g = 0; g < 2; ++g) {
+    const auto first = packing.position.begin() + first_node[g];
+    const auto last = packing.position.begin() + first_node[g + 1];
+    const Vector3 mean = std::accumulate(first, last, Vector3(0, 0, 0)) / static_cast<double>(last - first);
+    std::for_each(first, last, [&](Vector3& x) { x += Vector3(20.0 + 17.0 * g, 30.0, 30.0) - mean; });
+  }
+  const auto end = packing.position.begin() + first_node[1];
+  const auto shot =
+      std::max_element(packing.position.begin(), end, [](const Vector3& x, const Vector3& y) { return x[0] < y[0]; });
+  packing.velocity[shot - packing.position.begin()] = {1.5, 0.0, 0.0};
+  const Material weak = {.k = 1e-3, .gamma = 0.0, .k3 = 0.0}; // of bonds that let it go
+  Stepper lasting(packing, weak, {}), fresh(packing, weak, {});
+  lasting.start();
+  fresh.start();
+  std::int64_t most = 0;
+  for (int step = 0; step < 400; ++step) {
+    fresh.forces().contact_list().invalidate();
+    lasting.advance(Virial::trace);
+    fresh.advance(Virial::trace);
+    ASSERT_EQ(lasting.forces().contact_totals().n_touching, fresh.forces().contact_totals().n_touching) << step;
+    most = std::max(most, fresh.forces().contact_totals().n_touching);
+  }
+  EXPECT_GT(most, 0);
+  EXPECT_LT(lasting.forces().contact_list().counts().grains, 100);
 }
 
 TEST(Runs, FlipLeavesForcesAndPositionsAlone) {
