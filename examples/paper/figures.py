@@ -84,7 +84,7 @@ def compaction_figure(results, folder):
             left.plot(phi, pressure, "--", color=colour, lw=1, label=f"{label(alpha)}, smooth")
             right.plot(ratio, pressure, "--", color=colour, lw=1)
     left.set_xlabel(r"packing fraction $\phi$ (Monte Carlo)")
-    right.set_xlabel("undeformed hull volume of all grains / volume of the cell")
+    right.set_xlabel("undeformed hull volumes / volume of the cell")
     for axes in (left, right):
         axes.set_yscale("log")
         axes.set_ylim(1e-5, 1)
