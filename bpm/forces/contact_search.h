@@ -21,6 +21,7 @@ struct Gap {
   double width() const { return first_of_b - last_of_a; }
 };
 
+/// The narrowest such planes. Where the centres coincide there is no line, and a gap of width 0.
 Gap gap_between(const GrainGrid& a, const GrainFrame& frame_a, const GrainGrid& b, const GrainFrame& frame_b);
 
 /// Adds the pairs (node i of `a`, node j of `b`) closer than `radius`, measured where a's nodes are sorted; `b_to_a`
