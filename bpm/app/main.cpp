@@ -65,9 +65,11 @@ int run_command(int argc, char** argv) {
   } catch (const CLI::Success& success) { // --help, --version
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    if (!boba::is_other_rank()) {
-      app.exit(error);
+    if (boba::is_other_rank()) {
+      // Rank 0 tells, and fails for all: a launcher that sees another rank fail first ends rank 0 before it has spoken.
+      return static_cast<int>(ExitCode::done);
     }
+    app.exit(error);
     return static_cast<int>(ExitCode::wrong_input);
   }
   for (const auto& [sub, body] : bodies) {
@@ -81,8 +83,8 @@ int run_command(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
-  // A file that could not be written cannot be closed either: HDF5's own clean-up at the end would crash on it. Every file
-  // is closed by its owner.
+  // A file that could not be written cannot be closed either: HDF5's own clean-up at the end would crash on it. Every
+  // file is closed by its owner.
   H5dont_atexit();
   boba::shorten_thread_waiting(argv);
   try {
