@@ -48,14 +48,14 @@ TEST(ProgramOnRanks, GoesOnOnOtherRanks) {
     const std::string set = std::string("run.precision=\"") + precision + "\"", out = std::string("out-") + precision;
     const std::string alone = std::string("alone-") + precision;
     ASSERT_EQ(boba_on(1, folder, run_into(alone, {"--set", set})).exit_code, 0);
-    ProgramResult result = boba_on(4, folder, run_into(out, {"--set", set, "--wall-time", "0.2"}));
+    ProgramResult result = boba_on(4, folder, run_into(out, {"--set", set, "--wall-time", "0.05"}));
     int n_stops = 0;
     for (const int ranks : {1, 3, 2, 4, 1, 3, 1, 1, 1, 1}) {
       if (result.exit_code != 75) {
         break;
       }
       ++n_stops;
-      result = boba_on(ranks, folder, {"resume", out, "--wall-time", n_stops < 3 ? "0.2" : "100"});
+      result = boba_on(ranks, folder, {"resume", out, "--wall-time", n_stops < 3 ? "0.05" : "100"});
     }
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_GE(n_stops, 2);
