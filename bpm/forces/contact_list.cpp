@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pairs of grains: which there are, what they list, how long that lasts. Grains are followed in contact_tracking.cpp.
+// Pairs of grains: what they list and how long that lasts. Which pairs there are is in contact_neighbours.cpp; grains
+// are followed in contact_tracking.cpp.
 #include "bpm/forces/contact_list.h"
 
 #include "bpm/forces/node_pairs.h"
@@ -10,7 +11,6 @@
 #include <iterator>
 #include <limits>
 #include <stdexcept>
-#include <tuple>
 
 namespace boba {
 
@@ -137,79 +137,6 @@ void ContactList::note_motion(const Matrix3& cell_map, double farthest, double c
   }
 }
 
-void ContactList::find_neighbours(const Box& box) {
-  const int n_grains = layout_.n_grains();
-  std::vector<Bounds> bounds(n_grains);
-  for (const int g : layout_.grains()) {
-    TrackedGrain& grain = grains_[g];
-    bounds[g] = grain.grid.bounds().widened(bounds_margin_).mapped(grain.frame).widened(grain.stray);
-    grain.neighbour_frame = grain.frame;
-    grain.neighbour_bounds = bounds[g];
-    grain.outgrown = false;
-  }
-  share_bounds(bounds);
-  const GrainNeighbours neighbours(std::move(bounds), box, reach_between() + neighbour_margin_);
-  std::vector<ContactPair> found;
-#pragma omp parallel for schedule(dynamic, 8)
-  for (const int g : layout_.grains()) {
-    std::vector<ContactPair> of_grain = {ContactPair{g, g, {}}};
-    for (const auto& [other, image] : neighbours.of(g)) {
-      if (other > g || (other == g && image > ImageVector{})) {
-        of_grain.push_back({g, other, image});
-      } else if (other < g && !layout_.holds(other)) { // the other's rank has it the same way round
-        of_grain.push_back({other, g, {-image.a, -image.b, -image.c}});
-      }
-    }
-#pragma omp critical
-    std::move(of_grain.begin(), of_grain.end(), std::back_inserter(found));
-  }
-  const auto key = [](const ContactPair& pair) { return std::make_tuple(pair.a, pair.b, pair.image); };
-  std::sort(found.begin(), found.end(), [&](const ContactPair& x, const ContactPair& y) { return key(x) < key(y); });
-  for (auto old = pairs_.begin(); ContactPair & pair : found) { // both are sorted
-    while (old != pairs_.end() && key(*old) < key(pair)) {
-      ++old;
-    }
-    if (built_ && old != pairs_.end() && key(*old) == key(pair)) {
-      pair = std::move(*old++);
-    }
-  }
-  pairs_ = std::move(found);
-  sides_.assign(n_grains, {});
-  for (int index = 0; index < static_cast<int>(pairs_.size()); ++index) {
-    const ContactPair& pair = pairs_[index];
-    sides_[pair.a].push_back({index, 1.0});
-    sides_[pair.b].push_back({index, -1.0});
-  }
-  find_ghosts();
-  for (ContactPair& pair : pairs_) {
-    pair.changed = true;
-  }
-  cell_since_neighbours_ = Matrix3::Identity();
-}
-
-/// Distance that the nodes of grains which are not neighbours keep: they were farther apart than the reach when the
-/// neighbours were found, the cell may have shortened that, and each grain may have moved beyond the cell's motion.
-/// Nothing when a grain has a place that was not in its bounds then: a node that left, while the grain as a whole
-/// stayed.
-double ContactList::neighbour_guarantee(const Box& box) const {
-  const Matrix3& cell = cell_since_neighbours_;
-  const GrainFrame with_cell = {cell, box.origin() - cell * box.origin()};
-  double farthest = 0.0;
-  for (const int g : layout_.grains()) {
-    const TrackedGrain& grain = grains_[g];
-    if (grain.outgrown) {
-      farthest = std::numeric_limits<double>::max();
-    }
-    const GrainFrame carried = with_cell.after(grain.neighbour_frame);
-    grain.grid.bounds().widened(bounds_margin_).for_each_corner([&](const Vector3& x) {
-      farthest = std::max(farthest, (grain.frame(x) - carried(x)).norm() + grain.stray);
-    });
-  }
-  farthest = distribution_.ranks->largest(farthest);
-  const double stretch = 1.0 - (cell - Matrix3::Identity()).norm();
-  return stretch * (reach_between() + neighbour_margin_) - 2.0 * farthest;
-}
-
 GrainFrame ContactList::second_frame(const ContactPair& pair, const Box& box) const {
   return grains_[pair.b].frame.displaced(lattice_vector(box, pair.image));
 }
@@ -221,10 +148,10 @@ bool ContactList::search_holds(const ContactPair& pair) const {
   if (!pair.searched || a.anew || b.anew) {
     return false;
   }
-  if (pair.inside() || pair.apart <= reach_between()) {
+  const Gap& gap = pair.gap;
+  if (gap.width() <= reach_between()) {
     return true;
   }
-  const Gap& gap = pair.gap;
   return std::all_of(a.moved_to.begin(), a.moved_to.end(),
                      [&](const Vector3& place) { return gap.normal.dot(pair.frame_a(place)) <= gap.last_of_a; }) &&
          std::all_of(b.moved_to.begin(), b.moved_to.end(),

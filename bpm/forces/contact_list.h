@@ -127,8 +127,6 @@ private:
 
   // contact_list.cpp: pairs
   static double kept_distance(double distance, const Matrix3& cell, double crept);
-  void find_neighbours(const Box& box);
-  double neighbour_guarantee(const Box& box) const;
   double radius_in(const GrainFrame& frame) const;
   void search(ContactPair& pair, const Box& box, const NetworkData& network);
   void add_moved(ContactPair& pair, const NetworkData& network);
@@ -144,6 +142,11 @@ private:
   void relist(int grain);
   std::vector<std::int32_t> nodes_in(int grain, std::vector<kernels::NodePair> ContactPair::*list) const;
   GrainFrame second_frame(const ContactPair& pair, const Box& box) const;
+
+  // contact_neighbours.cpp: which grains may meet
+  void find_neighbours(const Box& box);
+  double neighbour_guarantee(const Box& box) const;
+  static void compare_with_neighbour_bounds(TrackedGrain& grain, const Vector3& place);
 
   // contact_following.cpp: nodes that are followed by themselves
   void follow(int grain, const LaneState& state);
@@ -165,7 +168,6 @@ private:
   kernels::LaneFrames fit_frames(int b, const LaneState& state);
   void note_all(int grain, const LaneState& state);
   bool note_moved(int grain, const LaneState& state);
-  static void compare_with_neighbour_bounds(TrackedGrain& grain, const Vector3& place);
   bool out_of_shape(const TrackedGrain& grain, int n_nodes) const;
   Vector3 place(int grain, int node) const;
 

@@ -160,10 +160,6 @@ void ContactList::note_all(int g, const LaneState& state) {
   grain.anew = true;
 }
 
-void ContactList::compare_with_neighbour_bounds(TrackedGrain& grain, const Vector3& place) {
-  grain.outgrown = grain.outgrown || !grain.neighbour_bounds.contains(grain.neighbour_frame(place));
-}
-
 /// Gives the nodes that strayed far the places where they are. False when one has left the grain's bounds.
 bool ContactList::note_moved(int g, const LaneState& state) {
   TrackedGrain& grain = grains_[g];

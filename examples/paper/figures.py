@@ -75,14 +75,12 @@ def save(figure, folder, name):
 def compaction_figure(results, folder):
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6))
     for alpha, colour in COLOURS.items():
-        for k, name in enumerate(results.runs(scene="compaction", alpha=alpha)):
-            phi, pressure, ratio = results.columns("compaction", name, "phi", "P", "phi_reference")
-            left.plot(phi, pressure, color=colour, lw=1, label=None if k else label(alpha))
-            right.plot(ratio, pressure, color=colour, lw=1)
-        for name in results.runs(scene="compaction", alpha=alpha, surface="wall"):
-            phi, pressure, ratio = results.columns("compaction", name, "phi", "P", "phi_reference")
-            left.plot(phi, pressure, "--", color=colour, lw=1, label=f"{label(alpha)}, smooth")
-            right.plot(ratio, pressure, "--", color=colour, lw=1)
+        for surface, style in (("", "-"), ("wall", "--")):
+            for k, name in enumerate(results.runs(scene="compaction", alpha=alpha, surface=surface)):
+                phi, pressure, ratio = results.columns("compaction", name, "phi", "P", "phi_reference")
+                text = label(alpha) + (", smooth" if surface else "")
+                left.plot(phi, pressure, style, color=colour, lw=1, label=None if k else text)
+                right.plot(ratio, pressure, style, color=colour, lw=1)
     left.set_xlabel(r"packing fraction $\phi$ (Monte Carlo)")
     right.set_xlabel("undeformed hull volumes / volume of the cell")
     for axes in (left, right):
