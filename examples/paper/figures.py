@@ -14,6 +14,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 POISSON = {"-0.8": 0.4, "0": 0.25, "2": 0.0, "5": -0.25, "12": -0.5}
 COLOURS = {"-0.8": "#1b6ca8", "0": "#2a9d8f", "2": "#7a9e2e", "5": "#d98e04", "12": "#c1121f"}
 SPHERE_RADIUS = 10.0
+GRAIN_KINDS = (("300", ""), ("300", "wall"), ("5137", ""))  # nodes of a grain, surface of its template
 
 
 class Results:
@@ -66,6 +67,14 @@ def label(alpha):
     return rf"$\nu$ = {POISSON[alpha]:g}"
 
 
+def kind_text(nodes, surface):
+    return f"{nodes} nodes{', smooth' if surface else ''}"
+
+
+def packing_text(grains, nodes, surface):
+    return f"{grains} {'smooth ' if surface else ''}grains of {nodes} nodes"
+
+
 def save(figure, folder, name):
     figure.tight_layout()
     figure.savefig(folder / f"{name}.png", dpi=100)
@@ -74,12 +83,12 @@ def save(figure, folder, name):
 
 def compaction_figure(results, folder):
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6))
-    for alpha, colour in COLOURS.items():
-        for surface, style in (("", "-"), ("wall", "--")):
-            for k, name in enumerate(results.runs(scene="compaction", alpha=alpha, surface=surface)):
+    for (nodes, surface), style in zip(GRAIN_KINDS, ("-", "--", "-.")):
+        for alpha, colour in COLOURS.items():
+            for k, name in enumerate(results.runs(scene="compaction", alpha=alpha, nodes=nodes, surface=surface)):
                 phi, pressure, ratio = results.columns("compaction", name, "phi", "P", "phi_reference")
-                text = label(alpha) + (", smooth" if surface else "")
-                left.plot(phi, pressure, style, color=colour, lw=1, label=None if k else text)
+                text = f"{label(alpha)}, {kind_text(nodes, surface)}" if len(phi) and not k else None
+                left.plot(phi, pressure, style, color=colour, lw=1, label=text)
                 right.plot(ratio, pressure, style, color=colour, lw=1)
     left.set_xlabel(r"packing fraction $\phi$ (Monte Carlo)")
     right.set_xlabel("undeformed hull volumes / volume of the cell")
@@ -87,7 +96,7 @@ def compaction_figure(results, folder):
         axes.set_yscale("log")
         axes.set_ylim(1e-5, 1)
         axes.set_ylabel(r"$\tilde P$")
-    left.legend(fontsize=8)
+    left.legend(fontsize=7)
     save(figure, folder, "compaction")
 
 
@@ -100,8 +109,13 @@ def spectra(results, axes, column, chosen):
     axes.set_xlabel("q (1/d)")
 
 
-def pressure_curves(results, alpha="-0.8"):
-    name = next(iter(results.runs(scene="compaction", alpha=alpha)), None)
+def compaction_shown(results):
+    """The compaction at nu = 0.4 that has the most nodes a grain, of those that have spectra; None when there is none."""
+    names = [name for name in results.runs(scene="compaction", alpha="-0.8") if results.rows("scattering", name)]
+    return max(names, key=lambda name: int(results.plan[name]["nodes"]), default=None)
+
+
+def pressure_curves(name):
     values = ["0.01", "0.03", "0.1", "0.2", "0.5"]
     colours = plt.cm.viridis(np.linspace(0, 0.9, len(values)))
     return [(name, v, c, "-", rf"$\tilde P$ = {v}") for v, c in zip(values, colours)]
@@ -121,8 +135,10 @@ def strain_curves(results):
 
 def figure_2(results, folder):
     figure, (upper, lower) = plt.subplots(2, 1, figsize=(4.6, 6))
-    spectra(results, upper, "structure", pressure_curves(results))
-    upper.set_title(r"(a) compaction, $\nu$ = 0.4", fontsize=10, loc="left")
+    compaction = compaction_shown(results)
+    nodes = int(results.plan[compaction]["nodes"]) if compaction else 300
+    spectra(results, upper, "structure", pressure_curves(compaction))
+    upper.set_title(rf"(a) compaction, {label('-0.8')}, {nodes} nodes", fontsize=10, loc="left")
     spectra(results, lower, "structure", strain_curves(results))
     lower.set_title(r"(b) $\tilde P$ = 0.1; dashed: strain 0, solid: 3.2", fontsize=10, loc="left")
     for axes in (upper, lower):
@@ -139,11 +155,13 @@ def sphere_form_factor(q, n, radius):
 
 def figure_s1(results, folder):
     figure, (upper, lower) = plt.subplots(2, 1, figsize=(4.6, 6))
-    spectra(results, upper, "form_factor", pressure_curves(results))
+    compaction = compaction_shown(results)
+    nodes = int(results.plan[compaction]["nodes"]) if compaction else 300
+    spectra(results, upper, "form_factor", pressure_curves(compaction))
     q = np.linspace(0.1, 2, 400)
-    radius = SPHERE_RADIUS * (300 / 5137) ** (1 / 3)
-    upper.plot(q, sphere_form_factor(q, 300, radius), "k--", lw=1, label=f"sphere, R = {radius:.2f} d")
-    upper.set_title(r"(a) compaction, $\nu$ = 0.4", fontsize=10, loc="left")
+    radius = SPHERE_RADIUS * (nodes / 5137) ** (1 / 3)
+    upper.plot(q, sphere_form_factor(q, nodes, radius), "k--", lw=1, label=f"sphere, R = {radius:.2f} d")
+    upper.set_title(rf"(a) compaction, {label('-0.8')}, {nodes} nodes", fontsize=10, loc="left")
     spectra(results, lower, "form_factor", strain_curves(results))
     lower.set_title(r"(b) $\tilde P$ = 0.1; dashed: strain 0, solid: 3.2", fontsize=10, loc="left")
     for axes in (upper, lower):
@@ -335,7 +353,7 @@ def reduction_figure(results, folder):
     for axis, ((grains, nodes, rate, surface), names) in zip(axes[:, 0], kinds.items()):
         for name, shade in zip(names, plt.cm.inferno(np.linspace(0.15, 0.75, len(names)))):
             order_curve(results, axis, name, color=shade, lw=1.2)
-        axis.set_title(f"{grains} {'smooth ' if surface else ''}grains of {nodes} nodes, rate {rate}", fontsize=8, loc="left")
+        axis.set_title(f"{packing_text(grains, nodes, surface)}, rate {rate}", fontsize=8, loc="left")
         axis.set_ylabel("ordered share", fontsize=8)
     axes[-1, 0].set_xlabel("strain (nu = -0.5)")
     save(figure, folder, "reduction")

@@ -10,7 +10,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
 from boba import blocked_mean
-from figures import POISSON, Results, mean_of_runs
+from figures import GRAIN_KINDS, POISSON, Results, kind_text, mean_of_runs, packing_text
 
 BEGIN, END = "<!-- numbers: written by examples/paper/table.py -->", "<!-- end of numbers -->"
 
@@ -65,37 +65,40 @@ def jamming(results, name, low, high):
 
 
 def compaction_rows(table, results):
-    for surface, kind, why in (("", "300 nodes", "300 nodes: rough grains touch at outer nodes while phi counts hulls; ramp of finite rate"),
-                               ("wall", "300 nodes, smooth", "300 nodes; ramp of finite rate")):
-        names = [n for n in results.runs(scene="compaction", surface=surface) if at_pressure(results, n, 1e-2)]
-        if surface and not names:
+    for nodes, surface in GRAIN_KINDS:
+        names = [n for n in results.runs(scene="compaction", nodes=nodes, surface=surface) if at_pressure(results, n, 1e-2)]
+        if not names and (nodes, surface) != GRAIN_KINDS[0]:
             continue
+        kind = kind_text(nodes, surface)
+        rough = "rough grains touch at outer nodes while phi counts hulls; " if not surface else ""
         fits = [fit for fit in (jamming(results, n, 2e-3, 1.2e-2) for n in names) if fit]
-        table.number(f"phi_c, from P~^(2/3) in 2e-3 .. 1.2e-2, all nu, {kind}", 0.6, [f[0] for f in fits], np.nan, why)
+        table.number(f"phi_c, from P~^(2/3) in 2e-3 .. 1.2e-2, all nu, {kind}", 0.6, [f[0] for f in fits], np.nan,
+                     f"{rough}ramp of finite rate")
         table.number(f"exponent of P~ against phi - phi_c (phi_c free), {kind}", 1.5, [f[1] for f in fits], np.nan,
                      "depends on the range of the fit; the ramp's own pressure below 1e-3")
-        soft = results.runs(scene="compaction", alpha="-0.8", surface=surface)
+        soft = [n for n in names if results.plan[n]["alpha"] == "-0.8"]
         for pressure, published in ((1e-2, 0.68), (0.5, 0.99)):
             values = [v for v in (at_pressure(results, n, pressure) for n in soft) if v]
             table.number(f"phi at P~ = {pressure:g}, nu = 0.4, {kind}", published, values, 0.001,
-                         "resolution: contacts are soft over d/2, and R is 3.9 d instead of 10 d")
+                         "resolution: contacts are soft over d/2, and R is 3.9 d instead of 10 d" if nodes == "300" else
+                         f"{results.plan[names[0]]['grains']} grains, and the ramp's rate")
 
 
 def early_rows(table, results):
     for alpha, published, mu in (("-0.8", 0.87, 0.17), ("12", 0.85, 0.10)):
-        for nodes, surface in ((300, ""), (300, "wall"), (5137, "")):
+        for nodes, surface in GRAIN_KINDS:
             slowest = [n for n in results.runs(scene="shear", alpha=alpha, nodes=nodes, remap="positions", surface=surface)
                        if results.rows("early", n)]
-            if surface and not slowest:
+            if not slowest and (nodes, surface) != GRAIN_KINDS[0]:
                 continue
             slowest = sorted(slowest, key=lambda n: (float(results.plan[n]["rate"]), -int(results.plan[n]["grains"])))
             slowest = [n for n in slowest if all(results.plan[n][key] == results.plan[slowest[0]][key]
                                                  for key in ("rate", "grains"))]
             rows = [results.rows("early", n)[0] for n in slowest]
             rate, grains = (results.plan[slowest[0]][key] if slowest else "-" for key in ("rate", "grains"))
-            why = "resolution (see above) and rate" if nodes == 300 else f"{grains} grains, and the rate"
+            why = "resolution (see above) and rate" if nodes == "300" else f"{grains} grains, and the rate"
             number = f"{float(rows[0]['inertial_number']):.2g}" if rows else "-"
-            nu = f"nu = {POISSON[alpha]:g}, {nodes} nodes{', smooth' if surface else ''}"
+            nu = f"nu = {POISSON[alpha]:g}, {kind_text(nodes, surface)}"
             table.number(f"phi before shear, P~ = 0.1, {nu}", published,
                          [float(r["phi_start"]) for r in rows if r["phi_start"]], 0.0015, why)
             table.number(f"phi, early shear, {nu}", published, [float(r["phi"]) for r in rows if r["phi"]],
@@ -150,7 +153,7 @@ def order_rows(table, results):
             detail = "; ".join(f"to strain {results.reached(n):.0f}: " + (
                 f"order from {onset(results, n):.0f}, share at the end {late_order(results, n):.2f}"
                 if onset(results, n) else f"none, share at the end {late_order(results, n):.2f}") for n in names)
-            table.text(f"runs that order, nu = {nu:g}, {grains} {'smooth ' if surface else ''}grains of {nodes} nodes, rate {rate}", published[alpha],
+            table.text(f"runs that order, nu = {nu:g}, {packing_text(grains, nodes, surface)}, rate {rate}", published[alpha],
                        f"{len(ordered)} of {len(names)} ({detail})" if names else "not afforded",
                        f"{int(grains) ** (1 / 3):.0f} grains an edge (published: 10); rate {float(rate) / 1.6e-5:.0f} times the published one")
 
@@ -201,7 +204,7 @@ def light_rows(table, results):
                 continue
             number, reached = float(rows[0]["inertial_number"]), rows[0]["to_strain"]
             why = f"I = {number:.2g}, to strain {reached}; {'grains relaxed in a smooth wall' if surface else 'rough grains of 300 nodes have friction'}"
-            what = f"P~ = 1e-4, nu = {nu:g}, 300 nodes{', smooth' if surface else ''}"
+            what = f"P~ = 1e-4, nu = {nu:g}, {kind_text(300, surface)}"
             table.number(f"nearly rigid grains, {what}: mu", 0.1, [float(r["mu"]) for r in rows], float(rows[0]["mu_error"]), why)
             table.number("the same: phi", 0.64, [float(r["phi"]) for r in rows if r["phi"]], float(rows[0]["phi_error"] or "nan"), why)
             table.text("the same: crystal", "none", f"share {late_order(results, names[0]):.2f} at the end", "far shorter")
