@@ -168,7 +168,7 @@ def structure(run, spec):
 
 def windows(reached):
     """Early and late windows of strain for distributions."""
-    late = [("late", 0.8 * reached, reached + 0.01)] if reached > 20 else []
+    late = [("late", 0.8 * reached, reached + 0.01)] if reached > 10 else []
     return [("early", 2.0, 4.5)] + late
 
 

@@ -14,7 +14,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 POISSON = {"-0.8": 0.4, "0": 0.25, "2": 0.0, "5": -0.25, "12": -0.5}
 COLOURS = {"-0.8": "#1b6ca8", "0": "#2a9d8f", "2": "#7a9e2e", "5": "#d98e04", "12": "#c1121f"}
 SPHERE_RADIUS = 10.0
-GRAIN_KINDS = (("300", ""), ("300", "wall"), ("5137", ""))  # nodes of a grain, surface of its template
+GRAIN_KINDS = (("300", ""), ("300", "wall"), ("5137", ""), ("5137", "wall"))  # nodes of a grain, surface of its template
 
 
 class Results:
@@ -45,9 +45,9 @@ class Results:
         rows = self.rows("summary", name)
         return float(rows[0]["strain"]) if rows else 0.0
 
-    def longest(self, alpha, nodes="300"):
+    def longest(self, alpha, nodes="300", surface=""):
         """Of one alpha's runs the one with the largest strain, of several the one with the most grains; None when there is none."""
-        names = [name for name in self.runs(scene="shear", alpha=alpha, nodes=nodes) if self.rows("structure", name)]
+        names = [name for name in self.runs(scene="shear", alpha=alpha, nodes=nodes, surface=surface) if self.rows("structure", name)]
         return max(names, key=lambda name: (round(self.reached(name)), int(self.plan[name]["grains"])), default=None)
 
 
@@ -83,7 +83,7 @@ def save(figure, folder, name):
 
 def compaction_figure(results, folder):
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6))
-    for (nodes, surface), style in zip(GRAIN_KINDS, ("-", "--", "-.")):
+    for (nodes, surface), style in zip(GRAIN_KINDS, ("-", "--", "-.", ":")):
         for alpha, colour in COLOURS.items():
             for k, name in enumerate(results.runs(scene="compaction", alpha=alpha, nodes=nodes, surface=surface)):
                 phi, pressure, ratio = results.columns("compaction", name, "phi", "P", "phi_reference")
@@ -219,50 +219,55 @@ def window_mean(results, name, column, low, high):
 
 
 def figure_4(results, folder):
+    """Facets: in early shear of the grains with the most nodes, cut and smooth; in the last fifth of the longest runs."""
+    nodes = "5137" if any(results.longest(alpha, "5137") for alpha in POISSON) else "300"
+    sets = [(f"strain 2 to 4.5, {nodes} nodes", "early", -0.27, 0.4, "s", lambda alpha: results.longest(alpha, nodes)),
+            ("the same, smooth", "early", 0.0, 0.7, "^", lambda alpha: results.longest(alpha, nodes, "wall")),
+            ("last fifth, 300 nodes", "late", 0.27, 1.0, "o", results.longest)]
     figure = plt.figure(figsize=(10, 7))
     grid = figure.add_gridspec(5, 3, width_ratios=(1.1, 1.2, 1.2))
     shares, twelve = figure.add_subplot(grid[:2, 0]), figure.add_subplot(grid[3:, 0])
-    positions = np.arange(5)
-    for shift, window in ((-0.2, "early"), (0.2, "late")):
+    for text, window, shift, opacity, marker, choose in sets:
         for k, alpha in enumerate(COLOURS):
-            name = results.longest(alpha)
+            name = choose(alpha)
             if not name:
                 continue
-            end = results.reached(name)
-            low, high = (2.0, 4.5) if window == "early" else (0.8 * end, end + 1)
+            low, high = (2.0, 4.5) if window == "early" else (0.8 * results.reached(name), np.inf)
             share = window_mean(results, name, "faceted_share", low, high)
-            shares.bar(k + shift, share, 0.36, color="#4c956c", alpha=1 if shift > 0 else 0.5)
-            shares.bar(k + shift, 1 - share, 0.36, bottom=share, color="#8d6a9f", alpha=1 if shift > 0 else 0.5)
-            twelve.plot(POISSON[alpha], window_mean(results, name, "twelve_facets_share", low, high),
-                        "o" if shift > 0 else "s", color=COLOURS[alpha], mfc=None if shift > 0 else "white")
-    shares.set_xticks(positions, [f"{POISSON[a]:g}" for a in COLOURS])
+            shares.bar(k + shift, share, 0.25, color="#4c956c", alpha=opacity)
+            shares.bar(k + shift, 1 - share, 0.25, bottom=share, color="#8d6a9f", alpha=opacity)
+            twelve.plot(POISSON[alpha], window_mean(results, name, "twelve_facets_share", low, high), marker,
+                        color=COLOURS[alpha], mfc="white" if marker == "s" else None)
+    shares.set_xticks(np.arange(5), [f"{POISSON[alpha]:g}" for alpha in COLOURS])
     shares.set_ylabel("share of the surface")
     shares.set_xlabel(r"$\nu$")
-    shares.set_title("(a) facets (green), curved (purple)\nlight: strain 2 to 4.5, full: last fifth", fontsize=8,
-                     loc="left")
+    shares.set_title("(a) facets (green), curved (purple);\n" + "\n".join(
+        f"{shade}: {text}" for shade, (text, *_) in zip(("light", "middle", "full"), sets)), fontsize=8, loc="left")
     twelve.set_xlabel(r"$\nu$")
     twelve.set_ylabel("grains with 12 facets")
     twelve.set_ylim(0, None)
-    twelve.set_title("(c) open: strain 2 to 4.5, full: last fifth", fontsize=8, loc="left")
+    twelve.set_title("(c) squares, triangles and circles: as light, middle and full in (a)", fontsize=8, loc="left")
     for k, alpha in enumerate(COLOURS):
-        name = results.longest(alpha)
-        for column, window in ((1, "early"), (2, "late")):
-            axes = figure.add_subplot(grid[k, column])
-            if name:
-                centre, count = results.columns("distributions", name, "centre", "count", quantity="facets",
-                                                window=window)
-                ordered = 1 - window_mean(results, name, "disordered", 2.0 if column == 1 else
-                                          0.8 * results.reached(name), 4.5 if column == 1 else 1e9)
-                if len(centre):
-                    axes.bar(centre, count / count.sum(), 0.85, color="#e76f51" if ordered > 0.5 else "#2a9d8f")
+        left, right = figure.add_subplot(grid[k, 1]), figure.add_subplot(grid[k, 2])
+        for axes, (_, window, *_, choose), style in zip((left, left, right), sets, ("bar", "outline", "bar")):
+            name = choose(alpha)
+            if not name:
+                continue
+            centre, count = results.columns("distributions", name, "centre", "count", quantity="facets", window=window)
+            low, high = (2.0, 4.5) if window == "early" else (0.8 * results.reached(name), np.inf)
+            ordered = 1 - window_mean(results, name, "disordered", low, high) > 0.5
+            if len(centre) and style == "bar":
+                axes.bar(centre, count / count.sum(), 0.85, color="#e76f51" if ordered else "#2a9d8f")
+            elif len(centre):
+                axes.step(centre, count / count.sum(), "k", where="mid", lw=1)
+        for axes in (left, right):
             axes.axvline(12, color="k", lw=0.5, ls=":")
             axes.set_xlim(3.5, 55.5)
             axes.tick_params(labelsize=7)
-            if column == 1:
-                axes.set_ylabel(label(alpha), fontsize=8)
-            if k == 0:
-                axes.set_title(("(b) strain 2 to 4.5", "last fifth; orange: ordered")[column - 1], fontsize=8,
-                               loc="left")
+        left.set_ylabel(label(alpha), fontsize=8)
+        if k == 0:
+            left.set_title(f"(b) {sets[0][0]}; line: smooth", fontsize=8, loc="left")
+            right.set_title(f"{sets[2][0]}; orange: ordered", fontsize=8, loc="left")
     figure.axes[-1].set_xlabel("facets of a grain (robust rule)", fontsize=8)
     save(figure, folder, "figure_4")
 
@@ -288,7 +293,8 @@ def figure_s3(results, folder):
     for alpha, colour in COLOURS.items():
         for nodes, grains, remap, surface, style in (("300", size, "positions", "", "o-"), ("300", size, "velocities", "", "x"),
                                                      ("300", "256", "positions", "", "D"), ("300", "64", "positions", "wall", "v:"),
-                                                     ("5137", "16", "positions", "", "s"), ("5137", "64", "positions", "", "P")):
+                                                     ("5137", "16", "positions", "", "s"), ("5137", "64", "positions", "", "P"),
+                                                     ("5137", "64", "positions", "wall", "*")):
             points = {}
             for name in results.runs(scene="shear", alpha=alpha, nodes=nodes, grains=grains, remap=remap, surface=surface):
                 for row in results.rows("early", name):
@@ -306,7 +312,7 @@ def figure_s3(results, folder):
                 right.plot(number, phi, style, color=colour, ms=4, lw=1)
     left.set_ylabel(r"$\mu$ (1 < strain < 5)")
     right.set_ylabel(r"$\phi$")
-    left.set_title(f"300 nodes: circles {size} grains (crosses: remap velocities), diamonds 256, triangles smooth grains;\n5137 nodes: squares 16 grains, plus 64", fontsize=8, loc="left")
+    left.set_title(f"300 nodes: circles {size} grains (crosses: remap velocities), diamonds 256, triangles smooth grains;\n5137 nodes: squares 16 grains, plus 64, stars 64 smooth ones", fontsize=8, loc="left")
     for axes in (left, right):
         axes.set_xscale("log")
         axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))

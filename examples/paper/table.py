@@ -184,15 +184,15 @@ def shape_rows(table, results):
             table.text(f"asphericity, 1 < strain < 10 and last fifth, nu = {POISSON[alpha]:g}",
                        "drops" if alpha != "12" else "no change", f"{first.mean():.4f} -> {last.mean():.4f}",
                        "the drop comes with order")
-    for nodes in ("300", "5137"):
-        for alpha in ("-0.8", "12"):
-            name = results.longest(alpha, nodes)
+    for nodes, surface in GRAIN_KINDS:
+        for alpha, nu in POISSON.items():
+            name = results.longest(alpha, nodes, surface)
             if name and results.rows("distributions", name, window="early", quantity="facets"):
                 centre, count = results.columns("distributions", name, "centre", "count", quantity="facets",
                                                 window="early")
-                table.text(f"facets of a grain (peak), disordered, nu = {POISSON[alpha]:g}, {nodes} nodes", "10 to 11",
+                table.text(f"facets of a grain (peak), 2 < strain < 4.5, nu = {nu:g}, {kind_text(nodes, surface)}", "10 to 11",
                            f"{centre[np.argmax(count)]:.0f} (mean {np.average(centre, weights=count):.1f})",
-                           "robust rule on cut grains: rough hulls have facets of their own")
+                           "robust rule" + ("" if surface else " on cut grains: rough hulls have facets of their own"))
 
 
 def light_rows(table, results):
