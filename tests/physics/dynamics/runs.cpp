@@ -1,36 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whole runs: conservation, flips, threads, restarts, walls, blow-up.
+// Whole runs: flips, threads, restarts, stages, walls, blow-up.
 #include "bpm/dynamics/simulation.h"
 #include "bpm/dynamics/stepper.h"
-#include "tests/support/small_packings.h"
+#include "tests/physics/dynamics/nine_grains.h"
 
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
-#include <numeric>
 #include <utility>
 
 namespace boba::test {
 namespace {
-
-const Box tilted({0.3, -1.0, 2.0}, {12.0, 11.0, 13.0}, {5.0, -4.0, 4.5});
-
-Packing nine_grains(double alpha = 2.0) {
-  return small_packing({.box = tilted, .n_grains = 9, .alpha = alpha});
-}
-
-void expect_same_bits(const Snapshot& a, const Snapshot& b) {
-  EXPECT_EQ(a.step, b.step);
-  EXPECT_EQ(a.strain, b.strain);
-  EXPECT_EQ(a.box.h(), b.box.h());
-  for (std::size_t i = 0; i < a.position.size(); ++i) {
-    ASSERT_EQ(a.position[i], b.position[i]) << "node " << i;
-    ASSERT_EQ(a.velocity[i], b.velocity[i]) << "node " << i;
-    ASSERT_EQ(a.force[i], b.force[i]) << "node " << i;
-  }
-}
-
-constexpr Simulation::Parts all_parts = {.velocity = true, .force = true};
 
 /// Asks for the whole stress at every `interval`-th step.
 class Watcher : public Observer {
@@ -175,69 +155,6 @@ TEST(Runs, FlipChangesNothing) {
   EXPECT_NEAR(flipping.pressure(), leaning.pressure(), 1e-9);
 }
 
-// A list that lives for many steps and one that is made anew at every step find the same contacts: the same bits come
-// out, while grains are sheared, squeezed and turned, the cell flips and single nodes are shot through the packing.
-TEST(Runs, LongLivedContactListsMissNothing) {
-  for (const Remap remap : {Remap::positions, Remap::velocities}) {
-    const Precision precision = remap == Remap::positions ? Precision::full : Precision::mixed;
-    Stepper lasting(nine_grains(), {}, {.precision = precision}), fresh(nine_grains(), {}, {.precision = precision});
-    Snapshot end[2];
-    for (Stepper* stepper : {&lasting, &fresh}) {
-      stepper->start();
-      if (remap == Remap::velocities) {
-        stepper->add_streaming(0.02, 1.0);
-      }
-      for (int step = 0; step < 600; ++step) {
-        if (stepper == &fresh) {
-          stepper->forces().contact_list().invalidate();
-        }
-        stepper->advance(step + 1 < 600 ? Virial::trace : Virial::full);
-        stepper->move_cell({.shear = 0.02, .remap = remap, .dilation = 0.05 * (stepper->pressure() - 0.2)});
-      }
-      end[stepper == &fresh] = stepper->snapshot(all_parts);
-    }
-    EXPECT_GT(lasting.forces().contact_totals().n_touching, 100);
-    EXPECT_LT(lasting.forces().contact_list().counts().grains, 300 * 9);
-    expect_same_bits(end[0], end[1]);
-  }
-}
-
-// A node that leaves its grain, which stays where it is, meets a grain that was nobody's neighbour.
-TEST(Runs, ANodeFarFromItsGrainIsNotMissed) {
-  Packing packing = small_packing({.box = Box({0, 0, 0}, {60, 60, 60}),
-                                   .n_grains = 2,
-                                   .radius = 5.0,
-                                   .alpha = 0.0,
-                                   .jitter = 0.0,
-                                   .speed = 0.0,
-                                   .least_distance = 12.0});
-  const std::vector<std::int64_t> first_node = packing.first_nodes();
-  for (int g = 0; g < 2; ++g) {
-    const auto first = packing.position.begin() + first_node[g];
-    const auto last = packing.position.begin() + first_node[g + 1];
-    const Vector3 mean = std::accumulate(first, last, Vector3(0, 0, 0)) / static_cast<double>(last - first);
-    std::for_each(first, last, [&](Vector3& x) { x += Vector3(20.0 + 17.0 * g, 30.0, 30.0) - mean; });
-  }
-  const auto end = packing.position.begin() + first_node[1];
-  const auto shot =
-      std::max_element(packing.position.begin(), end, [](const Vector3& x, const Vector3& y) { return x[0] < y[0]; });
-  packing.velocity[shot - packing.position.begin()] = {1.5, 0.0, 0.0};
-  const Material weak = {.k = 1e-3, .gamma = 0.0, .k3 = 0.0}; // of bonds that let it go
-  Stepper lasting(packing, weak, {}), fresh(packing, weak, {});
-  lasting.start();
-  fresh.start();
-  std::int64_t most = 0;
-  for (int step = 0; step < 400; ++step) {
-    fresh.forces().contact_list().invalidate();
-    lasting.advance(Virial::trace);
-    fresh.advance(Virial::trace);
-    ASSERT_EQ(lasting.forces().contact_totals().n_touching, fresh.forces().contact_totals().n_touching) << step;
-    most = std::max(most, fresh.forces().contact_totals().n_touching);
-  }
-  EXPECT_GT(most, 0);
-  EXPECT_LT(lasting.forces().contact_list().counts().grains, 100);
-}
-
 TEST(Runs, FlipLeavesForcesAndPositionsAlone) {
   Packing packing = nine_grains();
   Box box = packing.box;
@@ -258,67 +175,6 @@ TEST(Runs, FlipLeavesForcesAndPositionsAlone) {
     EXPECT_EQ(sa.position[i], sb.position[i]);
     EXPECT_LT((sa.force[i] - sb.force[i]).norm(), 1e-12);
   }
-}
-
-TEST(Runs, MomentumIsConserved) {
-  Stepper stepper(nine_grains(12.0), {}, {});
-  const auto momentum = [&] {
-    Vector3 sum = Vector3::Zero();
-    for (const Vector3& v : stepper.snapshot({.velocity = true}).velocity) {
-      sum += v;
-    }
-    return sum;
-  };
-  const Vector3 before = momentum();
-  stepper.start();
-  for (int step = 0; step < 500; ++step) {
-    stepper.advance(step + 1 < 500 ? Virial::none : Virial::full);
-  }
-  EXPECT_LT((momentum() - before).norm(), 1e-11);
-}
-
-// Angular momentum of a free, damped, violently shaken grain.
-TEST(Runs, AngularMomentumOfAFreeGrainIsConserved) {
-  Packing packing = small_packing({.box = Box({0, 0, 0}, {40, 40, 40}, {0, 0, 0}, {false, false, false}),
-                                   .n_grains = 1,
-                                   .radius = 3.0,
-                                   .alpha = 5.0,
-                                   .speed = 0.2});
-  Stepper stepper(packing, {}, {});
-  const auto angular_momentum = [&] {
-    const Snapshot now = stepper.snapshot(all_parts);
-    Vector3 sum = Vector3::Zero();
-    for (std::size_t i = 0; i < now.position.size(); ++i) {
-      sum += (now.position[i] - Vector3(20, 20, 20)).cross(now.velocity[i]);
-    }
-    return sum;
-  };
-  stepper.start();
-  const Vector3 before = angular_momentum();
-  for (int step = 0; step < 1000; ++step) {
-    stepper.advance(step + 1 < 1000 ? Virial::none : Virial::full);
-  }
-  EXPECT_LT((angular_momentum() - before).norm(), 1e-10);
-}
-
-// Without damping and many-body term there is an energy; velocity Verlet keeps it to second order in dt.
-TEST(Runs, EnergyOfAnUndampedPairwisePackingIsKeptToSecondOrder) {
-  const auto drift = [](double dt) {
-    Stepper stepper(small_packing({.box = tilted, .n_grains = 9, .alpha = 0.0}), {.gamma = 0.0}, {.dt = dt});
-    stepper.start();
-    double lowest = 1e300, highest = -1e300;
-    for (int step = 0; step < static_cast<int>(10.0 / dt); ++step) {
-      stepper.advance(Virial::full);
-      const Totals totals = stepper.totals();
-      const double energy = totals.kinetic_energy + totals.elastic_energy;
-      lowest = std::min(lowest, energy);
-      highest = std::max(highest, energy);
-    }
-    return (highest - lowest) / highest;
-  };
-  const double coarse = drift(0.02), fine = drift(0.01);
-  EXPECT_LT(fine, 1e-3);
-  EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.4);
 }
 
 TEST(Runs, CompressSettlesAtItsPressure) {

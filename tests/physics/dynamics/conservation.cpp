@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The momentum of a packing in mixed precision: what bonds and contacts cannot change stays, what walls change does not.
+// What bonds and contacts cannot change stays: momentum (in both precisions, but for walls), angular momentum, energy.
 #include "bpm/dynamics/stepper.h"
-#include "tests/support/small_packings.h"
+#include "tests/physics/dynamics/nine_grains.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ Packing dense_grains() {
 
 // Without a cure the rounding errors of the forces change the mean velocity by 1.5e-9 d/tau in that time; floats of these
 // velocities are 1e-10 d/tau apart.
-TEST(Momentum, OfAPackingInMixedPrecisionStays) {
+TEST(Conservation, MomentumOfAPackingInMixedPrecisionStays) {
   Packing packing = dense_grains();
   for (Vector3& v : packing.velocity) {
     v += Vector3(3e-4, -2e-4, 1e-4);
@@ -43,7 +44,7 @@ TEST(Momentum, OfAPackingInMixedPrecisionStays) {
 }
 
 // A drift of a thousandth of a quantum a step is not lost to rounding.
-TEST(Momentum, SlowDriftInMixedPrecision) {
+TEST(Conservation, MomentumOfASlowDriftInMixedPrecision) {
   const Packing still = small_packing(
       {.box = Box({0, 0, 0}, {40, 40, 40}), .n_grains = 3, .jitter = 0.0, .speed = 0.0, .least_distance = 8.0});
   Packing packing = still;
@@ -78,7 +79,7 @@ TEST(Momentum, SlowDriftInMixedPrecision) {
   EXPECT_LT(std::sqrt(noise), 3.0 * quantum / stepper.options().dt);
 }
 
-TEST(Momentum, IsTakenByWalls) {
+TEST(Conservation, MomentumIsTakenByWalls) {
   Packing packing = dense_grains();
   packing.box = Box(Vector3::Zero(), {200.0, 200.0, 200.0}, Vector3::Zero(), {false, false, false});
   Stepper stepper(std::move(packing), {}, {.precision = Precision::mixed});
@@ -89,6 +90,67 @@ TEST(Momentum, IsTakenByWalls) {
     stepper.advance(step < 320 ? Virial::none : Virial::full);
   }
   EXPECT_GT(mean_velocity(stepper)[2], 1e-4);
+}
+
+TEST(Conservation, MomentumOfAuxeticGrains) {
+  Stepper stepper(nine_grains(12.0), {}, {});
+  const auto momentum = [&] {
+    Vector3 sum = Vector3::Zero();
+    for (const Vector3& v : stepper.snapshot({.velocity = true}).velocity) {
+      sum += v;
+    }
+    return sum;
+  };
+  const Vector3 before = momentum();
+  stepper.start();
+  for (int step = 0; step < 500; ++step) {
+    stepper.advance(step + 1 < 500 ? Virial::none : Virial::full);
+  }
+  EXPECT_LT((momentum() - before).norm(), 1e-11);
+}
+
+// Angular momentum of a free, damped, violently shaken grain.
+TEST(Conservation, AngularMomentumOfAFreeGrain) {
+  Packing packing = small_packing({.box = Box({0, 0, 0}, {40, 40, 40}, {0, 0, 0}, {false, false, false}),
+                                   .n_grains = 1,
+                                   .radius = 3.0,
+                                   .alpha = 5.0,
+                                   .speed = 0.2});
+  Stepper stepper(packing, {}, {});
+  const auto angular_momentum = [&] {
+    const Snapshot now = stepper.snapshot(all_parts);
+    Vector3 sum = Vector3::Zero();
+    for (std::size_t i = 0; i < now.position.size(); ++i) {
+      sum += (now.position[i] - Vector3(20, 20, 20)).cross(now.velocity[i]);
+    }
+    return sum;
+  };
+  stepper.start();
+  const Vector3 before = angular_momentum();
+  for (int step = 0; step < 1000; ++step) {
+    stepper.advance(step + 1 < 1000 ? Virial::none : Virial::full);
+  }
+  EXPECT_LT((angular_momentum() - before).norm(), 1e-10);
+}
+
+// Without damping and many-body term there is an energy; velocity Verlet keeps it to second order in dt.
+TEST(Conservation, EnergyOfAnUndampedPairwisePackingToSecondOrder) {
+  const auto drift = [](double dt) {
+    Stepper stepper(small_packing({.box = tilted, .n_grains = 9, .alpha = 0.0}), {.gamma = 0.0}, {.dt = dt});
+    stepper.start();
+    double lowest = 1e300, highest = -1e300;
+    for (int step = 0; step < static_cast<int>(10.0 / dt); ++step) {
+      stepper.advance(Virial::full);
+      const Totals totals = stepper.totals();
+      const double energy = totals.kinetic_energy + totals.elastic_energy;
+      lowest = std::min(lowest, energy);
+      highest = std::max(highest, energy);
+    }
+    return (highest - lowest) / highest;
+  };
+  const double coarse = drift(0.02), fine = drift(0.01);
+  EXPECT_LT(fine, 1e-3);
+  EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.4);
 }
 
 } // namespace
