@@ -23,11 +23,12 @@ Vector3 mean_velocity(const Stepper& stepper) {
 }
 
 Packing dense_grains() {
-  return small_packing({.box = Box(Vector3::Zero(), {12.0, 11.0, 12.0}, {5.0, -4.0, 3.0}), .n_grains = 9, .speed = 0.01});
+  return small_packing(
+      {.box = Box(Vector3::Zero(), {12.0, 11.0, 12.0}, {5.0, -4.0, 3.0}), .n_grains = 9, .speed = 0.01});
 }
 
-// Without a cure the rounding errors of the forces change the mean velocity by 1.5e-9 d/tau in that time; floats of these
-// velocities are 1e-10 d/tau apart.
+// Without a cure the rounding errors of the forces change the mean velocity by 1.5e-9 d/tau in that time; floats of
+// these velocities are 1e-10 d/tau apart.
 TEST(Conservation, MomentumOfAPackingInMixedPrecisionStays) {
   Packing packing = dense_grains();
   for (Vector3& v : packing.velocity) {
