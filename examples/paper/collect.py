@@ -44,12 +44,15 @@ def log_numbers(run):
     return nodes, seconds
 
 
+def is_done(run):
+    return "done at step" in (run.folder / "run.log").read_text()
+
+
 def summary(run, spec):
     table = run.table
     nodes, seconds = log_numbers(run)
-    done = "done at step" in (run.folder / "run.log").read_text()
     return [{"steps": int(table["step"][-1]), "nodes": nodes, "strain": round(float(table["strain"][-1]), 3),
-             "finished": int(done), "seconds": int(seconds)}]
+             "finished": int(is_done(run)), "seconds": int(seconds)}]
 
 
 def compaction(run, spec):
@@ -69,6 +72,21 @@ def compaction(run, spec):
                          "phi_nodes": f"{measured['phi_nodes'][k]:.5f}",
                          "phi_reference": f"{measured['phi_reference'][k]:.5f}",
                          "ordered": f"{1 - order['disordered_share'][k]:.3f}"})
+    return rows
+
+
+def jamming(run, spec):
+    """P~ and phi at rest, the last frame of every stage that has come to its end."""
+    if spec["scene"] != "jamming":
+        return []
+    table, measured = run.table, run.measure("packing_fraction")
+    ended = np.unique(table["stage"])[: None if is_done(run) else -1]
+    rows = []
+    for stage in ended:
+        last = np.flatnonzero(table["stage"] == stage)[-1]
+        k = np.flatnonzero(measured["step"] <= table["step"][last])[-1]
+        rows.append({"P": f"{table['P_normalised'][last]:.4g}", "phi": f"{measured['phi'][k]:.5f}",
+                     "phi_error": f"{measured['phi_error'][k]:.5f}"})
     return rows
 
 
@@ -202,7 +220,7 @@ def traces(run, spec):
             for s, v, a in zip(grains["strain"][chosen], grains["volume_d3"][chosen], grains["asphericity"][chosen])]
 
 
-TABLES = {"summary": summary, "compaction": compaction, "scattering": scattering, "series": series, "early": early,
+TABLES = {"summary": summary, "compaction": compaction, "jamming": jamming, "scattering": scattering, "series": series, "early": early,
           "structure": structure, "distributions": distributions, "traces": traces}
 
 

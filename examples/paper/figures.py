@@ -15,6 +15,7 @@ POISSON = {"-0.8": 0.4, "0": 0.25, "2": 0.0, "5": -0.25, "12": -0.5}
 COLOURS = {"-0.8": "#1b6ca8", "0": "#2a9d8f", "2": "#7a9e2e", "5": "#d98e04", "12": "#c1121f"}
 SPHERE_RADIUS = 10.0
 GRAIN_KINDS = (("300", ""), ("300", "wall"), ("5137", ""), ("5137", "wall"))  # nodes of a grain, surface of its template
+RESTING = dict(zip(GRAIN_KINDS, ("o", "^", "s", "*")))  # their marks where they are at rest
 
 
 class Results:
@@ -90,6 +91,9 @@ def compaction_figure(results, folder):
                 text = f"{label(alpha)}, {kind_text(nodes, surface)}" if len(phi) and not k else None
                 left.plot(phi, pressure, style, color=colour, lw=1, label=text)
                 right.plot(ratio, pressure, style, color=colour, lw=1)
+            for name in results.runs(scene="jamming", alpha=alpha, nodes=nodes, surface=surface):
+                phi, pressure = results.columns("jamming", name, "phi", "P")
+                left.plot(phi, pressure, RESTING[nodes, surface], color=colour, ms=3)
     left.set_xlabel(r"packing fraction $\phi$ (Monte Carlo)")
     right.set_xlabel("undeformed hull volumes / volume of the cell")
     for axes in (left, right):

@@ -48,38 +48,47 @@ def at_pressure(results, name, pressure):
     return float(np.interp(np.log(pressure), np.log(p[order]), phi[order]))
 
 
-def jamming(results, name, low, high):
-    """phi_c from P~^(2/3) extrapolated to zero, and the exponent of P~ ~ (phi - phi_c)^b with phi_c free."""
-    p, phi = results.columns("compaction", name, "P", "phi")
-    inside = (p > low) & (p < high)
-    if inside.sum() < 6:
+def power_law(p, phi):
+    """phi_c from P~^(2/3) extrapolated to zero, and the exponent of P~ ~ (phi - phi_c)^b with phi_c free; None of few points."""
+    if len(p) < 5:
         return None
-    slope, offset = np.polyfit(p[inside] ** (2 / 3), phi[inside], 1)
+    slope, offset = np.polyfit(p ** (2 / 3), phi, 1)
     best = (np.inf, 0.0, 0.0)
-    for critical in np.linspace(phi[inside].min() - 0.15, phi[inside].min() - 1e-4, 600):
-        x = np.log(phi[inside] - critical)
-        power, constant = np.polyfit(x, np.log(p[inside]), 1)
-        residual = np.sum((np.log(p[inside]) - power * x - constant) ** 2)
+    for critical in np.linspace(phi.min() - 0.15, phi.min() - 1e-4, 600):
+        x = np.log(phi - critical)
+        power, constant = np.polyfit(x, np.log(p), 1)
+        residual = np.sum((np.log(p) - power * x - constant) ** 2)
         best = min(best, (residual, critical, power))
     return offset, best[2]
 
 
+def jamming_rows(table, results, scene, nodes, surface, low, high, why):
+    """phi_c and the exponent between two pressures, from the runs of one scene and kind of grains."""
+    fits = []
+    for name in results.runs(scene=scene, nodes=nodes, surface=surface):
+        p, phi = results.columns(scene, name, "P", "phi")
+        inside = (p > low) & (p < high)
+        fits.append(power_law(p[inside], phi[inside]))
+    fits = [fit for fit in fits if fit]
+    if not fits and (nodes, surface) != GRAIN_KINDS[0]:
+        return
+    kind = f"{kind_text(nodes, surface)}, {'ramp' if scene == 'compaction' else 'at rest'}"
+    table.number(f"phi_c, from P~^(2/3) in {low:g} .. {high:g}, {kind}", 0.6, [f[0] for f in fits], np.nan, why)
+    table.number(f"exponent of P~ against phi - phi_c (phi_c free), {kind}", 1.5, [f[1] for f in fits], np.nan, why)
+
+
 def compaction_rows(table, results):
     for nodes, surface in GRAIN_KINDS:
+        rough = "; rough grains touch at outer nodes while phi counts hulls" if not surface else ""
+        jamming_rows(table, results, "jamming", nodes, surface, 5e-4, 1.2e-2, f"few grains{rough}")
+        jamming_rows(table, results, "compaction", nodes, surface, 2e-3, 1.2e-2, f"pressure of the ramp itself{rough}")
         names = [n for n in results.runs(scene="compaction", nodes=nodes, surface=surface) if at_pressure(results, n, 1e-2)]
-        if not names and (nodes, surface) != GRAIN_KINDS[0]:
-            continue
-        kind = kind_text(nodes, surface)
-        rough = "rough grains touch at outer nodes while phi counts hulls; " if not surface else ""
-        fits = [fit for fit in (jamming(results, n, 2e-3, 1.2e-2) for n in names) if fit]
-        table.number(f"phi_c, from P~^(2/3) in 2e-3 .. 1.2e-2, all nu, {kind}", 0.6, [f[0] for f in fits], np.nan,
-                     f"{rough}ramp of finite rate")
-        table.number(f"exponent of P~ against phi - phi_c (phi_c free), {kind}", 1.5, [f[1] for f in fits], np.nan,
-                     "depends on the range of the fit; the ramp's own pressure below 1e-3")
         soft = [n for n in names if results.plan[n]["alpha"] == "-0.8"]
+        if not soft and (nodes, surface) != GRAIN_KINDS[0]:
+            continue
         for pressure, published in ((1e-2, 0.68), (0.5, 0.99)):
             values = [v for v in (at_pressure(results, n, pressure) for n in soft) if v]
-            table.number(f"phi at P~ = {pressure:g}, nu = 0.4, {kind}", published, values, 0.001,
+            table.number(f"phi at P~ = {pressure:g}, nu = 0.4, {kind_text(nodes, surface)}", published, values, 0.001,
                          "resolution: contacts are soft over d/2, and R is 3.9 d instead of 10 d" if nodes == "300" else
                          f"{results.plan[names[0]]['grains']} grains, and the ramp's rate")
 
