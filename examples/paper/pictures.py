@@ -31,9 +31,9 @@ def last_run(plan, out, alpha):
 
 
 def early_run(plan, out, alpha):
-    """A run at strain 3.2: of the published resolution where there is one."""
-    rows = [row for row in csv.DictReader(open(plan)) if row["scene"] == "shear" and row["alpha"] == alpha and not row["surface"]]
-    for row in sorted(rows, key=lambda row: (-int(row["nodes"]), -int(row["grains"]))):
+    """A run at strain 3.2: of the published resolution where there is one, and smooth as the published grains are."""
+    rows = [row for row in csv.DictReader(open(plan)) if row["scene"] == "shear" and row["alpha"] == alpha]
+    for row in sorted(rows, key=lambda row: (-int(row["nodes"]), -int(row["grains"]), not row["surface"])):
         folder = pathlib.Path(out) / row["name"]
         if (folder / "trajectory.h5").exists() and boba.open(folder).table["strain"][-1] >= 3.2:
             return boba.open(folder)
