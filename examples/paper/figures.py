@@ -15,7 +15,6 @@ POISSON = {"-0.8": 0.4, "0": 0.25, "2": 0.0, "5": -0.25, "12": -0.5}
 COLOURS = {"-0.8": "#1b6ca8", "0": "#2a9d8f", "2": "#7a9e2e", "5": "#d98e04", "12": "#c1121f"}
 SPHERE_RADIUS = 10.0
 GRAIN_KINDS = (("300", ""), ("300", "wall"), ("5137", ""), ("5137", "wall"))  # nodes of a grain, surface of its template
-RESTING = dict(zip(GRAIN_KINDS, ("o", "^", "s", "*")))  # their marks where they are at rest
 
 
 class Results:
@@ -84,7 +83,7 @@ def save(figure, folder, name):
 
 def compaction_figure(results, folder):
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6))
-    for (nodes, surface), style in zip(GRAIN_KINDS, ("-", "--", "-.", ":")):
+    for (nodes, surface), style, at_rest in zip(GRAIN_KINDS, ("-", "--", "-.", ":"), "o^s*"):
         for alpha, colour in COLOURS.items():
             for k, name in enumerate(results.runs(scene="compaction", alpha=alpha, nodes=nodes, surface=surface)):
                 phi, pressure, ratio = results.columns("compaction", name, "phi", "P", "phi_reference")
@@ -93,7 +92,7 @@ def compaction_figure(results, folder):
                 right.plot(ratio, pressure, style, color=colour, lw=1)
             for name in results.runs(scene="jamming", alpha=alpha, nodes=nodes, surface=surface):
                 phi, pressure = results.columns("jamming", name, "phi", "P")
-                left.plot(phi, pressure, RESTING[nodes, surface], color=colour, ms=3)
+                left.plot(phi, pressure, at_rest, color=colour, ms=3)
     left.set_xlabel(r"packing fraction $\phi$ (Monte Carlo)")
     right.set_xlabel("undeformed hull volumes / volume of the cell")
     for axes in (left, right):
@@ -137,17 +136,24 @@ def strain_curves(results):
     return chosen
 
 
-def figure_2(results, folder):
+def spectra_panels(results, column):
+    """Figure 2's and S1's two panels, one above the other, with the nodes a grain of the upper one."""
     figure, (upper, lower) = plt.subplots(2, 1, figsize=(4.6, 6))
     compaction = compaction_shown(results)
     nodes = int(results.plan[compaction]["nodes"]) if compaction else 300
-    spectra(results, upper, "structure", pressure_curves(compaction))
+    spectra(results, upper, column, pressure_curves(compaction))
     upper.set_title(rf"(a) compaction, {label('-0.8')}, {nodes} nodes", fontsize=10, loc="left")
-    spectra(results, lower, "structure", strain_curves(results))
+    spectra(results, lower, column, strain_curves(results))
     lower.set_title(r"(b) $\tilde P$ = 0.1; dashed: strain 0, solid: 3.2", fontsize=10, loc="left")
     for axes in (upper, lower):
-        axes.set_ylabel("S(q)")
         axes.set_xlim(0.15, 2)
+    return figure, upper, lower, nodes
+
+
+def figure_2(results, folder):
+    figure, upper, lower, _ = spectra_panels(results, "structure")
+    for axes in (upper, lower):
+        axes.set_ylabel("S(q)")
         axes.legend(fontsize=7)
     save(figure, folder, "figure_2")
 
@@ -158,21 +164,14 @@ def sphere_form_factor(q, n, radius):
 
 
 def figure_s1(results, folder):
-    figure, (upper, lower) = plt.subplots(2, 1, figsize=(4.6, 6))
-    compaction = compaction_shown(results)
-    nodes = int(results.plan[compaction]["nodes"]) if compaction else 300
-    spectra(results, upper, "form_factor", pressure_curves(compaction))
+    figure, upper, lower, nodes = spectra_panels(results, "form_factor")
     q = np.linspace(0.1, 2, 400)
     radius = SPHERE_RADIUS * (nodes / 5137) ** (1 / 3)
     upper.plot(q, sphere_form_factor(q, nodes, radius), "k--", lw=1, label=f"sphere, R = {radius:.2f} d")
-    upper.set_title(rf"(a) compaction, {label('-0.8')}, {nodes} nodes", fontsize=10, loc="left")
-    spectra(results, lower, "form_factor", strain_curves(results))
-    lower.set_title(r"(b) $\tilde P$ = 0.1; dashed: strain 0, solid: 3.2", fontsize=10, loc="left")
     for axes in (upper, lower):
         axes.set_yscale("log")
         axes.set_ylim(1e-1, None)
         axes.set_ylabel(r"$P_F(q)$")
-        axes.set_xlim(0.15, 2)
         axes.legend(fontsize=7)
     save(figure, folder, "figure_S1")
 
@@ -216,7 +215,9 @@ def figure_3(results, folder):
     save(figure, folder, "figure_3")
 
 
-def window_mean(results, name, column, low, high):
+def window_mean(results, name, column, window):
+    """Mean over the frames of a window: early or late, as in collect.py's distributions."""
+    low, high = (2.0, 4.5) if window == "early" else (0.8 * results.reached(name), np.inf)
     strain, values = results.columns("structure", name, "strain", column)
     inside = (strain > low) & (strain < high)
     return values[inside].mean() if inside.any() else np.nan
@@ -236,11 +237,10 @@ def figure_4(results, folder):
             name = choose(alpha)
             if not name:
                 continue
-            low, high = (2.0, 4.5) if window == "early" else (0.8 * results.reached(name), np.inf)
-            share = window_mean(results, name, "faceted_share", low, high)
+            share = window_mean(results, name, "faceted_share", window)
             shares.bar(k + shift, share, 0.25, color="#4c956c", alpha=opacity)
             shares.bar(k + shift, 1 - share, 0.25, bottom=share, color="#8d6a9f", alpha=opacity)
-            twelve.plot(POISSON[alpha], window_mean(results, name, "twelve_facets_share", low, high), marker,
+            twelve.plot(POISSON[alpha], window_mean(results, name, "twelve_facets_share", window), marker,
                         color=COLOURS[alpha], mfc="white" if marker == "s" else None)
     shares.set_xticks(np.arange(5), [f"{POISSON[alpha]:g}" for alpha in COLOURS])
     shares.set_ylabel("share of the surface")
@@ -258,8 +258,7 @@ def figure_4(results, folder):
             if not name:
                 continue
             centre, count = results.columns("distributions", name, "centre", "count", quantity="facets", window=window)
-            low, high = (2.0, 4.5) if window == "early" else (0.8 * results.reached(name), np.inf)
-            ordered = 1 - window_mean(results, name, "disordered", low, high) > 0.5
+            ordered = 1 - window_mean(results, name, "disordered", window) > 0.5
             if len(centre) and style == "bar":
                 axes.bar(centre, count / count.sum(), 0.85, color="#e76f51" if ordered else "#2a9d8f")
             elif len(centre):

@@ -6,16 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numeric>
 
 namespace boba::test {
 namespace {
 
+Vector3 sum(const std::vector<Vector3>& values) {
+  return std::accumulate(values.begin(), values.end(), Vector3(0, 0, 0));
+}
+
 Vector3 mean(const std::vector<Vector3>& values) {
-  Vector3 sum = Vector3::Zero();
-  for (const Vector3& value : values) {
-    sum += value;
-  }
-  return sum / static_cast<double>(values.size());
+  return sum(values) / static_cast<double>(values.size());
 }
 
 Vector3 mean_velocity(const Stepper& stepper) {
@@ -95,13 +96,7 @@ TEST(Conservation, MomentumIsTakenByWalls) {
 
 TEST(Conservation, MomentumOfAuxeticGrains) {
   Stepper stepper(nine_grains(12.0), {}, {});
-  const auto momentum = [&] {
-    Vector3 sum = Vector3::Zero();
-    for (const Vector3& v : stepper.snapshot({.velocity = true}).velocity) {
-      sum += v;
-    }
-    return sum;
-  };
+  const auto momentum = [&] { return sum(stepper.snapshot({.velocity = true}).velocity); };
   const Vector3 before = momentum();
   stepper.start();
   for (int step = 0; step < 500; ++step) {
