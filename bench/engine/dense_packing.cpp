@@ -9,7 +9,6 @@
 #include "bpm/packing/insertion.h"
 
 #include <fmt/format.h>
-
 #include <optional>
 #include <stdexcept>
 #include <utility>

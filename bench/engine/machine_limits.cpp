@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the machine can do at most, measured beside the kernels: bytes from memory and caches, fused multiply-adds.
 #include <benchmark/benchmark.h>
-
 #include <cstdint>
 #include <vector>
 

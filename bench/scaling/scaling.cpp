@@ -71,22 +71,23 @@ void run(const Arguments& a, const Ranks& ranks) {
     return;
   }
   const double n_nodes = static_cast<double>(stepper.packing().position.size());
-  fmt::print("{{\"ranks\": {}, \"threads\": {}, \"grains\": {}, \"nodes\": {}, \"alpha\": {}, \"mixed\": {}, \"steps\": {}, "
-             "\"ms_a_step\": {:.4f}, \"node_steps_per_s\": {:.4g}, \"processor_ms\": {:.4f}, \"work_ms\": {:.4f}, "
-             "\"search_ms\": {:.4f}, \"halo_ms\": {:.4f}, \"reduction_ms\": {:.4f}, \"halo_bytes_a_step\": {:.0f}, "
-             "\"halo_messages_a_step\": {:.2f}, \"halos_a_step\": {:.4f}, \"bytes_a_node\": {:.0f}",
-             ranks.size(), a.threads, stepper.packing().n_grains(), n_nodes, a.alpha, a.mixed, a.steps, 1e3 * wall,
-             n_nodes / wall, 1e3 * largest[0] / n_steps, 1e3 * largest[1] / n_steps,
-             1e3 * (t.search - before.search) / n_steps, 1e3 * largest[2] / n_steps, 1e3 * largest[3] / n_steps,
-             largest[4] / n_steps, largest[5] / n_steps,
-             static_cast<double>(t.halo_builds - before.halo_builds) / n_steps,
-             static_cast<double>(stepper.bytes()) / (n_nodes / ranks.size()));
+  fmt::print(
+      "{{\"ranks\": {}, \"threads\": {}, \"grains\": {}, \"nodes\": {}, \"alpha\": {}, \"mixed\": {}, \"steps\": {}, "
+      "\"ms_a_step\": {:.4f}, \"node_steps_per_s\": {:.4g}, \"processor_ms\": {:.4f}, \"work_ms\": {:.4f}, "
+      "\"search_ms\": {:.4f}, \"halo_ms\": {:.4f}, \"reduction_ms\": {:.4f}, \"halo_bytes_a_step\": {:.0f}, "
+      "\"halo_messages_a_step\": {:.2f}, \"halos_a_step\": {:.4f}, \"bytes_a_node\": {:.0f}",
+      ranks.size(), a.threads, stepper.packing().n_grains(), n_nodes, a.alpha, a.mixed, a.steps, 1e3 * wall,
+      n_nodes / wall, 1e3 * largest[0] / n_steps, 1e3 * largest[1] / n_steps,
+      1e3 * (t.search - before.search) / n_steps, 1e3 * largest[2] / n_steps, 1e3 * largest[3] / n_steps,
+      largest[4] / n_steps, largest[5] / n_steps, static_cast<double>(t.halo_builds - before.halo_builds) / n_steps,
+      static_cast<double>(stepper.bytes()) / (n_nodes / ranks.size()));
   for (std::size_t k = 0; k < a.count.size(); ++k) {
     const HaloCount c = count_halo(stepper, a.count[k]);
-    fmt::print("{}{{\"ranks\": {}, \"imbalance\": {:.3f}, \"messages\": {:.2f}, \"nodes\": {:.0f}, \"most_nodes\": {:.0f}, "
-               "\"ghosts\": {:.1f}}}",
-               k == 0 ? ", \"counted\": [" : ", ", c.n_ranks, c.imbalance, c.mean_messages, c.mean_nodes, c.most_nodes,
-               c.mean_ghosts);
+    fmt::print(
+        "{}{{\"ranks\": {}, \"imbalance\": {:.3f}, \"messages\": {:.2f}, \"nodes\": {:.0f}, \"most_nodes\": {:.0f}, "
+        "\"ghosts\": {:.1f}}}",
+        k == 0 ? ", \"counted\": [" : ", ", c.n_ranks, c.imbalance, c.mean_messages, c.mean_nodes, c.most_nodes,
+        c.mean_ghosts);
   }
   fmt::print("{}{}}}\n", a.count.empty() ? "" : "]", frame);
 }

@@ -30,7 +30,7 @@ struct PackingSpec {
   int n_grains = 8;
   int n_nodes = 150;
   double alpha = 2.0;
-  double pressure = 0.1; ///< normalised, P~
+  double pressure = 0.1;   ///< normalised, P~
   double tolerance = 1e-3; ///< kinetic over elastic energy at rest, and of the pressure
 };
 

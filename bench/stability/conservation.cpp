@@ -26,13 +26,15 @@ Momenta momenta(const Snapshot& snapshot) {
 } // namespace
 
 void conservation(const Folder& folder) {
-  OutputFile file = csv(folder, "conservation", "nodes,alpha_kd,gamma,precision,steps,momentum_error,angular_error,kinetic_kd2");
+  OutputFile file =
+      csv(folder, "conservation", "nodes,alpha_kd,gamma,precision,steps,momentum_error,angular_error,kinetic_kd2");
   struct Case {
     double alpha, gamma;
     Precision precision;
   };
-  for (const Case& c : {Case{0.0, 0.0, Precision::full}, Case{0.0, 1.0, Precision::full}, Case{2.0, 1.0, Precision::full},
-                        Case{12.0, 1.0, Precision::full}, Case{2.0, 1.0, Precision::mixed}}) {
+  for (const Case& c :
+       {Case{0.0, 0.0, Precision::full}, Case{0.0, 1.0, Precision::full}, Case{2.0, 1.0, Precision::full},
+        Case{12.0, 1.0, Precision::full}, Case{2.0, 1.0, Precision::mixed}}) {
     const auto grain = ball(100);
     Packing packing = lone_grain(grain, c.alpha, 0.05);
     const Vector3 spin(0.003, -0.002, 0.004);

@@ -2,7 +2,6 @@
 // Ledgers over closed strain cycles, and undamped grains left alone: does the law pump or lose energy?
 #include "bench/stability/cases.h"
 #include "bench/stability/ledger.h"
-
 #include "bpm/dynamics/simulation.h"
 
 #include <cmath>
@@ -36,7 +35,8 @@ public:
     const int steps = std::max(1, static_cast<int>(std::round(sample_time / stepper_.options().dt)));
     const auto n = static_cast<int>(std::round((to - from) * cycle.n_samples));
     const auto gradient_of = [&](int k) -> Matrix3 { // ln of a path near the identity, over the sample's time
-      const Matrix3 step = cycle.path(from + (to - from) * (k + 1) / n) * cycle.path(from + (to - from) * k / n).inverse();
+      const Matrix3 step =
+          cycle.path(from + (to - from) * (k + 1) / n) * cycle.path(from + (to - from) * k / n).inverse();
       const Matrix3 e = step - Matrix3::Identity();
       return (e - 0.5 * e * e + e * e * e / 3.0) / (steps * stepper_.options().dt);
     };
@@ -106,7 +106,9 @@ void bulk_loops(const Folder& folder) {
   OutputFile file = csv(folder, "energy_loops", "nodes,alpha_kd,gamma,amplitude,sense,period_tau," + columns);
   const auto cube = periodic_cube(6.0);
   const auto run = [&](double alpha, double gamma, double amplitude, double sense, double period) {
-    const auto prefix = [&] { return fmt::format("{},{},{},{},{},{}", cube->n_nodes(), alpha, gamma, amplitude, sense, period); };
+    const auto prefix = [&] {
+      return fmt::format("{},{},{},{},{},{}", cube->n_nodes(), alpha, gamma, amplitude, sense, period);
+    };
     try {
       Deformation deformation(bulk(cube, alpha), Material{.gamma = gamma}, 0.1);
       deformation.follow({ramp(amplitude), 0.25 * period, 250}, 0.0, 1.0);
@@ -128,7 +130,8 @@ void bulk_loops(const Folder& folder) {
   file.close();
 }
 
-/// The same loop for larger and larger pieces of bulk: does the work per energy vanish where the network looks isotropic?
+/// The same loop for larger and larger pieces of bulk: does the work per energy vanish where the network looks
+/// isotropic?
 void bulk_sizes(const Folder& folder) {
   OutputFile file = csv(folder, "energy_sizes", "edge_d,nodes,alpha_kd,sense," + columns);
   for (const double edge : {5.0, 6.0, 8.0, 11.0, 14.0}) {
@@ -162,10 +165,12 @@ void packing_cycles(const Folder& folder) {
           };
           for (int cycle = 1; cycle <= 3; ++cycle) {
             const Account account = deformation.follow({shear, 400.0, 2000}, 0.0, 1.0);
-            file.print("{},{},{},{},{},{},{}\n", spec.n_grains, spec.n_nodes, alpha, gamma, amplitude, cycle, row(account));
+            file.print("{},{},{},{},{},{},{}\n", spec.n_grains, spec.n_nodes, alpha, gamma, amplitude, cycle,
+                       row(account));
           }
         } catch (const BlowUp&) {
-          file.print("{},{},{},{},{},0,nan,nan,nan,nan,nan,nan,nan\n", spec.n_grains, spec.n_nodes, alpha, gamma, amplitude);
+          file.print("{},{},{},{},{},0,nan,nan,nan,nan,nan,nan,nan\n", spec.n_grains, spec.n_nodes, alpha, gamma,
+                     amplitude);
         }
         file.flush();
       }

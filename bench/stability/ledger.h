@@ -8,7 +8,8 @@
 
 namespace boba::bench {
 
-/// Energies and powers of a state, from the laws by plain loops over bonds and contacts, apart from the engine's kernels.
+/// Energies and powers of a state, from the laws by plain loops over bonds and contacts, apart from the engine's
+/// kernels.
 struct Powers {
   double kinetic = 0.0;     ///< k d^2
   double bonds = 0.0;       ///< elastic energy of the springs, k d^2

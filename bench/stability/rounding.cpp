@@ -9,7 +9,9 @@ namespace boba::bench {
 
 namespace {
 
-const char* name_of(Precision precision) { return precision == Precision::full ? "double" : "mixed"; }
+const char* name_of(Precision precision) {
+  return precision == Precision::full ? "double" : "mixed";
+}
 
 double distance(const Snapshot& snapshot, const Twin& twin) {
   double sum = 0.0;
@@ -22,7 +24,8 @@ double distance(const Snapshot& snapshot, const Twin& twin) {
   return std::sqrt(sum / static_cast<double>(snapshot.position.size()));
 }
 
-/// A dense packing that is shaken: damped it comes to rest, undamped (alpha = 0, so that energy is kept) it stays chaotic.
+/// A dense packing that is shaken: damped it comes to rest, undamped (alpha = 0, so that energy is kept) it stays
+/// chaotic.
 void error_growth(const Folder& folder) {
   OutputFile file = csv(folder, "rounding_growth", "alpha_kd,gamma,precision,time_tau,distance_d");
   struct Case {
@@ -117,8 +120,12 @@ void rest_in(const Folder& folder, const std::string& name, Precision precision)
 
 } // namespace
 
-void rest(const Folder& folder) { rest_in(folder, "rest", Precision::full); }
+void rest(const Folder& folder) {
+  rest_in(folder, "rest", Precision::full);
+}
 
-void rest_mixed(const Folder& folder) { rest_in(folder, "rest_mixed", Precision::mixed); }
+void rest_mixed(const Folder& folder) {
+  rest_in(folder, "rest_mixed", Precision::mixed);
+}
 
 } // namespace boba::bench

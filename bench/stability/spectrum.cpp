@@ -4,7 +4,6 @@
 #include "bench/stability/cases.h"
 
 #include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -16,9 +15,9 @@ namespace {
 using Eigen::MatrixXd;
 
 struct Operators {
-  MatrixXd stiffness0;  ///< of the springs
-  MatrixXd stiffness1;  ///< of the many-body term, for alpha = 1
-  MatrixXd damping;     ///< for gamma = 1
+  MatrixXd stiffness0; ///< of the springs
+  MatrixXd stiffness1; ///< of the many-body term, for alpha = 1
+  MatrixXd damping;    ///< for gamma = 1
 };
 
 /// df = -(k + alpha / r0) s + alpha (W_i + W_j) / (V0_i + V0_j), W_i = sum of r0^2 s, s the stretch of a bond.
@@ -39,7 +38,8 @@ Operators operators_of(const GrainTemplate& grain) {
   MatrixXd tension = stretch;
   for (Eigen::Index b = 0; b < n_bonds; ++b) {
     const Bond& bond = grain.bonds[b];
-    tension.row(b) = stretch.row(b) / bond.r0 - (swelling.row(bond.i) + swelling.row(bond.j)) / (volume[bond.i] + volume[bond.j]);
+    tension.row(b) =
+        stretch.row(b) / bond.r0 - (swelling.row(bond.i) + swelling.row(bond.j)) / (volume[bond.i] + volume[bond.j]);
   }
   const MatrixXd pull = stretch.transpose();
   return {pull * stretch, pull * tension, pull * stretch};
@@ -98,7 +98,8 @@ double sufficient_damping(const MatrixXd& stiffness, const MatrixXd& damping) {
 } // namespace
 
 void spectrum(const Folder& folder) {
-  OutputFile file = csv(folder, "spectrum", "nodes,alpha_kd,rate_per_tau,frequency_per_tau,n_complex,n_modes,sufficient_gamma");
+  OutputFile file =
+      csv(folder, "spectrum", "nodes,alpha_kd,rate_per_tau,frequency_per_tau,n_complex,n_modes,sufficient_gamma");
   for (const int n : {40, 100, 250}) {
     const Operators operators = operators_of(*ball(n));
     for (const double alpha : n < 200 ? alphas : std::vector<double>{-0.8, 2.0, 12.0}) {

@@ -3,7 +3,6 @@
 #include "bench/stability/cases.h"
 
 #include <CLI/CLI.hpp>
-
 #include <fmt/format.h>
 #include <functional>
 
@@ -17,17 +16,18 @@ int main(int argc, char** argv) {
     void (*run)(const boba::bench::Folder&);
   };
   using namespace boba::bench;
-  for (const Sweep& sweep : {Sweep{"time_step", "largest stable step: linearised operator and experiment", time_step},
-                             Sweep{"contacts", "the same for packings under pressure", contacts},
-                             Sweep{"spectrum", "growth of an undamped grain, from the spectrum", spectrum},
-                             Sweep{"energy", "energy ledgers of bulk over closed loops of strain; undamped grains left alone", energy},
-                             Sweep{"cycles", "the same ledger for sheared packings, and for larger and larger bulk", cycles},
-                             Sweep{"conservation", "momenta of a free grain over 1e6 steps", conservation},
-                             Sweep{"rounding", "error growth against a more precise twin", rounding},
-                             Sweep{"rest", "1e7 steps of a packing at rest", rest},
-                             Sweep{"rest_mixed", "the same in mixed precision", rest_mixed},
-                             Sweep{"long_shear", "1e6 steps of shear in double and mixed precision", long_shear},
-                             Sweep{"barostat", "gain scan, step response, deviation under shear", barostat}}) {
+  for (const Sweep& sweep :
+       {Sweep{"time_step", "largest stable step: linearised operator and experiment", time_step},
+        Sweep{"contacts", "the same for packings under pressure", contacts},
+        Sweep{"spectrum", "growth of an undamped grain, from the spectrum", spectrum},
+        Sweep{"energy", "energy ledgers of bulk over closed loops of strain; undamped grains left alone", energy},
+        Sweep{"cycles", "the same ledger for sheared packings, and for larger and larger bulk", cycles},
+        Sweep{"conservation", "momenta of a free grain over 1e6 steps", conservation},
+        Sweep{"rounding", "error growth against a more precise twin", rounding},
+        Sweep{"rest", "1e7 steps of a packing at rest", rest},
+        Sweep{"rest_mixed", "the same in mixed precision", rest_mixed},
+        Sweep{"long_shear", "1e6 steps of shear in double and mixed precision", long_shear},
+        Sweep{"barostat", "gain scan, step response, deviation under shear", barostat}}) {
     CLI::App* command = app.add_subcommand(sweep.name, sweep.what);
     command->add_option("--output", folder, "folder for the tables")->capture_default_str();
     command->callback([&folder, run = sweep.run] { run(folder); });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The largest stable time step: of the linearised operator, and by experiment.
 #include "bench/stability/cases.h"
-
 #include "bpm/dynamics/simulation.h"
 #include "bpm/dynamics/stable_step.h"
 
@@ -113,7 +112,8 @@ double step_of_packing(const Packing& packing, const Material& material) {
       v /= length;
     }
     const std::vector<Vector3> stiff = change(false);
-    const std::vector<Vector3> damped = material.gamma > 0.0 ? change(true) : std::vector<Vector3>(u.size(), Vector3::Zero());
+    const std::vector<Vector3> damped =
+        material.gamma > 0.0 ? change(true) : std::vector<Vector3>(u.size(), Vector3::Zero());
     const double w2 = dot(stiff), c = dot(damped);
     dt = 4.0 / (c + std::sqrt(c * c + 4.0 * w2));
     for (std::size_t i = 0; i < u.size(); ++i) {

@@ -16,12 +16,17 @@ using Vector = Twin::Vector;
 constexpr int search_interval = 20;
 constexpr double margin = 1.0; ///< d; the runs it is made for move far less in so many steps
 
-Real dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Real dot(const Vector& a, const Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Vector minus(const Vector& a, const Vector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
 
 /// The nearest image's lattice vector, whose numbers are those of the cell itself: the same in every precision.
 Vector nearest(const Vector& difference, const Box& box) {
-  const Vector3 d(static_cast<double>(difference[0]), static_cast<double>(difference[1]), static_cast<double>(difference[2]));
+  const Vector3 d(static_cast<double>(difference[0]), static_cast<double>(difference[1]),
+                  static_cast<double>(difference[2]));
   const Vector3 n = (box.h_inverse() * d).array().round();
   Vector result = difference;
   for (int c = 0; c < 3; ++c) {
@@ -98,7 +103,8 @@ void Twin::add_bonds() {
       const Vector d = minus(x_[i], x_[j]);
       const Real r = std::sqrt(dot(d, d)), r0 = bond.r0;
       const Real q = std::cbrt((volume[bond.i] + volume[bond.j]) / (volume0[bond.i] + volume0[bond.j]));
-      const Real f = bond_force<Real, Real>(material_.k, alpha, material_.gamma, r, r0, 1 / r0, q, dot(d, minus(v_[i], v_[j])) / r);
+      const Real f = bond_force<Real, Real>(material_.k, alpha, material_.gamma, r, r0, 1 / r0, q,
+                                            dot(d, minus(v_[i], v_[j])) / r);
       push(f_, i, j, d, f / r);
     }
   }

@@ -254,9 +254,10 @@ std::filesystem::path CheckpointObserver::write(const Simulation& simulation) {
   }
   store_writers_(data_);
   const std::vector<std::int64_t> first_node = simulation.packing().first_nodes();
-  return write_checkpoint(
-      folder_, data_, simulation.ranks(),
-      {{entries_of_nodes.begin(), entries_of_nodes.end()}, node_runs(simulation.own_grains(), first_node), first_node.back()});
+  return write_checkpoint(folder_, data_, simulation.ranks(),
+                          {{entries_of_nodes.begin(), entries_of_nodes.end()},
+                           node_runs(simulation.own_grains(), first_node),
+                           first_node.back()});
 }
 
 } // namespace boba

@@ -46,8 +46,9 @@ bool print_time_step(const Scene& scene, const std::optional<PackingStep>& stabl
     return true;
   }
   const bool good = scene.options.dt < stable->dt;
-  fmt::print("time step: {:g} tau; bonds are stable up to {:.4g} tau (alpha = {:g}), deep contacts to somewhat less{}\n",
-             scene.options.dt, stable->dt, stable->alpha, good ? "" : ": TOO LARGE");
+  fmt::print(
+      "time step: {:g} tau; bonds are stable up to {:.4g} tau (alpha = {:g}), deep contacts to somewhat less{}\n",
+      scene.options.dt, stable->dt, stable->alpha, good ? "" : ": TOO LARGE");
   return good;
 }
 

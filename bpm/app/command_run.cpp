@@ -39,9 +39,10 @@ void check_inside(const Scene& scene) {
   const std::filesystem::path here = std::filesystem::canonical(std::filesystem::current_path());
   const std::filesystem::path there = std::filesystem::weakly_canonical(here / scene.output.directory);
   if (std::mismatch(here.begin(), here.end(), there.begin(), there.end()).first != here.end()) {
-    throw InputError(fmt::format("{}: output.directory = {}: leads to {} through a link, outside of the current folder; "
-                                 "--output may name any folder",
-                                 scene.path.string(), scene.output.directory.string(), there.string()));
+    throw InputError(
+        fmt::format("{}: output.directory = {}: leads to {} through a link, outside of the current folder; "
+                    "--output may name any folder",
+                    scene.path.string(), scene.output.directory.string(), there.string()));
   }
 }
 

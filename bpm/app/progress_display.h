@@ -31,8 +31,8 @@ private:
   bool quiet_;
   bool terminal_;
   bool drawn_ = false;
-  bool visible_;    ///< rank 0 alone draws
-  double interval_; ///< s
+  bool visible_;              ///< rank 0 alone draws
+  double interval_;           ///< s
   double last_seconds_ = 0.0; ///< of the forecast that was answered with yes
   int stage_ = -1;
   std::int64_t first_step_ = 0;

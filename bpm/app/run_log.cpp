@@ -14,8 +14,8 @@ namespace boba {
 
 namespace {
 
-/// Every line goes to the operating system at once, and a refusal is heard: spdlog's own files try to write a line later
-/// again, and say nothing when there is no later.
+/// Every line goes to the operating system at once, and a refusal is heard: spdlog's own files try to write a line
+/// later again, and say nothing when there is no later.
 class CheckedFileSink : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
 public:
   explicit CheckedFileSink(const std::filesystem::path& file) : file_(file, FileMode::append) {}

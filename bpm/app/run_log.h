@@ -21,8 +21,8 @@ public:
 
   void note(const std::string& text); ///< file only
   void say(const std::string& text);  ///< file and standard output
-  /// Why the run ends, in the file alone (the program prints that itself), and what the user can do, printed too. Both in
-  /// the file only if it still takes them.
+  /// Why the run ends, in the file alone (the program prints that itself), and what the user can do, printed too. Both
+  /// in the file only if it still takes them.
   void last_words(const std::string& why, const std::string& advice) noexcept;
 
 private:

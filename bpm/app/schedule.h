@@ -11,7 +11,8 @@ namespace boba {
 class Schedule {
 public:
   Schedule(const OutputInterval& every, double strain, double time)
-      : every_(every), strain_(strain), strain_index_(index(strain, every.strain)), time_index_(index(time, every.time)) {}
+      : every_(every), strain_(strain), strain_index_(index(strain, every.strain)),
+        time_index_(index(time, every.time)) {}
 
   /// True when the step passes a multiple of the strain or time interval. To be asked once for every step, in order.
   bool due(const StepForecast& forecast);

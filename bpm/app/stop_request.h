@@ -7,7 +7,8 @@
 
 namespace boba {
 
-/// Why a run should stop now: SIGINT, SIGTERM, SIGUSR1 (which mpirun and Slurm hand on to all ranks), or its wall-time limit. A second SIGINT ends the program at once.
+/// Why a run should stop now: SIGINT, SIGTERM, SIGUSR1 (which mpirun and Slurm hand on to all ranks), or its wall-time
+/// limit. A second SIGINT ends the program at once.
 class StopRequest {
 public:
   /// Takes over the signals until it is destroyed. `wall_time`: seconds from now.

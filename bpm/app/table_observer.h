@@ -20,7 +20,8 @@ std::vector<std::string> run_table_columns();
 class TableObserver : public Observer {
 public:
   /// Without a writer it looks on and writes nothing.
-  TableObserver(std::optional<TableWriter> writer, const Schedule& schedule, const PackingNumbers& numbers, std::int64_t last_step)
+  TableObserver(std::optional<TableWriter> writer, const Schedule& schedule, const PackingNumbers& numbers,
+                std::int64_t last_step)
       : writer_(std::move(writer)), schedule_(schedule), numbers_(numbers), last_step_(last_step),
         speed_step_(last_step) {}
 

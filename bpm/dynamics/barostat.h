@@ -7,9 +7,9 @@ namespace boba {
 
 /// What the default gain is made from.
 struct BarostatContext {
-  double bulk_modulus = 0.0;  ///< of the packing, k/d
+  double bulk_modulus = 0.0;   ///< of the packing, k/d
   double sound_crossing = 0.0; ///< time of sound across the shortest side of the cell, tau
-  double shear_rate = 0.0;    ///< 1/tau, 0 when nothing shears
+  double shear_rate = 0.0;     ///< 1/tau, 0 when nothing shears
 };
 
 /// The gain asked for or, by default, g = 1 / (3 K t_c) with t_c = min(0.01 / |rate|, 100 tau), but t_c at least three

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/dynamics/blow_up.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
+#include <fmt/format.h>
 
 namespace boba {
 
@@ -52,10 +51,11 @@ std::string describe_alternation(const Block& block, std::int64_t step, double d
   for (const int other : block.grain) {
     grain = grain < 0 ? other : grain;
   }
-  return fmt::format("blow-up at step {}: the nodes of grain {} or one of the {} grains stored with it turn round at every step "
-                     "({:.3g} d each): dt = {:g} tau is too large for these grains and their contacts; try a smaller run.dt, or "
-                     "run.dt = \"auto\"",
-                     step, grain, block.n_grains(), moved, dt);
+  return fmt::format(
+      "blow-up at step {}: the nodes of grain {} or one of the {} grains stored with it turn round at every step "
+      "({:.3g} d each): dt = {:g} tau is too large for these grains and their contacts; try a smaller run.dt, or "
+      "run.dt = \"auto\"",
+      step, grain, block.n_grains(), moved, dt);
 }
 
 std::string describe_stretched_bond(const ForceField::Stretch& stretch, std::int64_t step, double dt) {

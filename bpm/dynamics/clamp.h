@@ -20,8 +20,8 @@ struct Clamp {
 /// The nodes of this rank's grains whose z lies in [low, high].
 Clamp clamp_between(double low, double high, const LaneLayout& layout, const LaneState& state);
 
-/// Takes the clamped nodes' forces into `clamp.force` and gives the nodes the clamp's velocity and no force. Nodes of other
-/// ranks' grains are theirs to do; all ranks know the force. Collective.
+/// Takes the clamped nodes' forces into `clamp.force` and gives the nodes the clamp's velocity and no force. Nodes of
+/// other ranks' grains are theirs to do; all ranks know the force. Collective.
 void apply_clamp(Clamp& clamp, const LaneLayout& layout, LaneState& state, const Distribution& distribution);
 
 /// All ranks' parts of a clamp, sorted by grain and node, on all ranks. Collective.

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/dynamics/compress_driver.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <stdexcept>
 
 namespace boba {
@@ -16,7 +15,9 @@ constexpr std::int64_t settle_interval = 20;
 
 } // namespace
 
-void CompressDriver::begin(Stepper& stepper) { start_time_ = stepper.time(); }
+void CompressDriver::begin(Stepper& stepper) {
+  start_time_ = stepper.time();
+}
 
 bool CompressDriver::has_settled(const Stepper& stepper) const {
   if (std::abs(stepper.pressure() / stage_.barostat.pressure - 1.0) >= stage_.pressure_tolerance ||
@@ -41,10 +42,10 @@ double CompressDriver::bulk_modulus(Stepper& stepper) const {
 
 CellRates CompressDriver::update(Stepper& stepper) {
   if (stepper.time() - start_time_ > stage_.max_time) {
-    throw std::runtime_error(
-        fmt::format("compress: not settled after max_time = {} tau: P = {:.6g} (target {:.6g} k/d), kinetic energy {:.3g} k d^2; "
-                    "a smaller rate, a larger max_time or wider tolerances help",
-                    stage_.max_time, stepper.pressure(), stage_.barostat.pressure, stepper.kinetic_energy()));
+    throw std::runtime_error(fmt::format(
+        "compress: not settled after max_time = {} tau: P = {:.6g} (target {:.6g} k/d), kinetic energy {:.3g} k d^2; "
+        "a smaller rate, a larger max_time or wider tolerances help",
+        stage_.max_time, stepper.pressure(), stage_.barostat.pressure, stepper.kinetic_energy()));
   }
   if (phase_ == Phase::ramp && halfway_.time < 0.0 && stepper.pressure() >= 0.5 * stage_.barostat.pressure) {
     halfway_ = {stepper.time(), stepper.pressure()};

@@ -5,8 +5,8 @@
 
 namespace boba {
 
-/// Isotropic compression: a ramp at a constant rate to the target pressure, then the barostat until pressure and kinetic
-/// energy have settled.
+/// Isotropic compression: a ramp at a constant rate to the target pressure, then the barostat until pressure and
+/// kinetic energy have settled.
 class CompressDriver : public StageDriver {
 public:
   explicit CompressDriver(const CompressStage& stage) : stage_(stage) {}

@@ -3,9 +3,8 @@
 
 #include "bpm/dynamics/step_count.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
+#include <fmt/format.h>
 #include <stdexcept>
 
 namespace boba {
@@ -29,9 +28,10 @@ void PressDriver::begin_clamps(Stepper& stepper) {
   const std::array<double, 2> z = stepper.extent_z();
   height_ = z[1] - z[0] - 2.0 * stage_.clamp_thickness;
   if (!(height_ > 0.0)) {
-    throw std::runtime_error(fmt::format("press: clamp_thickness = {} d leaves nothing between the ends of a specimen of height "
-                                         "{:.4g} d; it must be below half of that",
-                                         stage_.clamp_thickness, z[1] - z[0]));
+    throw std::runtime_error(
+        fmt::format("press: clamp_thickness = {} d leaves nothing between the ends of a specimen of height "
+                    "{:.4g} d; it must be below half of that",
+                    stage_.clamp_thickness, z[1] - z[0]));
   }
   stepper.set_clamps({stepper.nodes_between(z[0], z[0] + stage_.clamp_thickness),
                       stepper.nodes_between(z[1] - stage_.clamp_thickness, z[1])});
@@ -39,7 +39,9 @@ void PressDriver::begin_clamps(Stepper& stepper) {
   stepper.clamps()[1].velocity = -stage_.velocity * Vector3::UnitZ();
 }
 
-double PressDriver::moved() const { return static_cast<double>(steps_done_) * dt_ * stage_.velocity; }
+double PressDriver::moved() const {
+  return static_cast<double>(steps_done_) * dt_ * stage_.velocity;
+}
 
 CellRates PressDriver::update(Stepper& stepper) {
   ++steps_done_;

@@ -26,10 +26,10 @@ struct Barostat {
 /// |P / P_target - 1| < pressure_tolerance and kinetic / elastic energy < kinetic_tolerance.
 struct CompressStage {
   Barostat barostat;
-  double rate = 5e-4;               ///< -d ln L / dt of the ramp, 1/tau
+  double rate = 5e-4; ///< -d ln L / dt of the ramp, 1/tau
   double pressure_tolerance = 1e-3;
   double kinetic_tolerance = 1e-4;
-  double max_time = 1e6;            ///< tau; the stage fails when it has not settled by then
+  double max_time = 1e6; ///< tau; the stage fails when it has not settled by then
 };
 
 /// A fixed cell, or a constant pressure, for a time.
@@ -46,13 +46,13 @@ struct ShearStage {
   std::optional<Barostat> barostat;
 };
 
-/// Squeezes a specimen along z between two rigid walls or two clamped ends (which move towards each other with `velocity`
-/// each, symmetrically), until the nominal strain is reached.
+/// Squeezes a specimen along z between two rigid walls or two clamped ends (which move towards each other with
+/// `velocity` each, symmetrically), until the nominal strain is reached.
 struct PressStage {
   enum class Ends { walls, clamps };
   Ends ends = Ends::walls;
-  double velocity = 1e-3;       ///< of each end, d/tau; negative pulls (clamps)
-  double strain = 0.0;          ///< nominal strain: displacement of both ends together over the specimen's initial height
+  double velocity = 1e-3; ///< of each end, d/tau; negative pulls (clamps)
+  double strain = 0.0;    ///< nominal strain: displacement of both ends together over the specimen's initial height
   double clamp_thickness = 2.0; ///< d; nodes within this distance of the specimen's ends move rigidly
 };
 

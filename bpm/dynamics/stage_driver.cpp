@@ -9,9 +9,7 @@ namespace boba {
 
 namespace {
 
-template <class... Cases> struct Overloaded : Cases... {
-  using Cases::operator()...;
-};
+template <class... Cases> struct Overloaded : Cases... { using Cases::operator()...; };
 template <class... Cases> Overloaded(Cases...) -> Overloaded<Cases...>;
 
 } // namespace

@@ -12,8 +12,8 @@ namespace boba {
 
 namespace {
 
-/// Steps between two looks at the range of fixed-point positions, and at the momentum of floats. In one step a node moves
-/// at most half a diameter.
+/// Steps between two looks at the range of fixed-point positions, and at the momentum of floats. In one step a node
+/// moves at most half a diameter.
 constexpr std::int64_t recentre_interval = 64;
 constexpr double largest_range_share = 0.45;
 /// Kinetic energy of full steps over that of half steps below which velocities change sign from step to step.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Momentum in mixed precision. The rounding errors of a packing's forces do not add up to zero, and at rest they are the
-// same at every step: nothing damps the motion of the whole, so that it would be accelerated for good.
+// Momentum in mixed precision. The rounding errors of a packing's forces do not add up to zero, and at rest they are
+// the same at every step: nothing damps the motion of the whole, so that it would be accelerated for good.
 #include "bpm/dynamics/stepper.h"
 
 namespace boba {

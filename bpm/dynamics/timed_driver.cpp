@@ -7,7 +7,9 @@
 
 namespace boba {
 
-TimedDriver::TimedDriver(const HoldStage& stage) : hold_time_(stage.time) { shear_.barostat = stage.barostat; }
+TimedDriver::TimedDriver(const HoldStage& stage) : hold_time_(stage.time) {
+  shear_.barostat = stage.barostat;
+}
 
 void TimedDriver::begin(Stepper& stepper) {
   const double duration = is_shear_ ? shear_.strain / std::abs(shear_.rate) : hold_time_;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-
 #include <optional>
 #include <vector>
 
@@ -17,15 +16,15 @@ struct Bond {
 
 /// The undeformed arrangement of a grain's nodes and its bond network; every grain of one template shares it.
 ///
-/// Invariants: nodes are sorted along a space-filling curve (a bond's two ends are near in memory), centred on their mean;
-/// bonds have i < j, are sorted by (i, j) and unique. With `period` the template is a periodic cube or cuboid and
+/// Invariants: nodes are sorted along a space-filling curve (a bond's two ends are near in memory), centred on their
+/// mean; bonds have i < j, are sorted by (i, j) and unique. With `period` the template is a periodic cube or cuboid and
 /// bonds may join a node to an image (their r0 is the nearest-image distance).
 /// Source: docs/notation.md, "Grain".
 struct GrainTemplate {
   std::vector<Eigen::Vector3d> position; ///< d, size n
   std::vector<Bond> bonds;
   std::optional<Eigen::Vector3d> period; ///< d; lengths of a periodic template, absent for a free grain
-  double reference_volume = 0.0;         ///< d^3; volume the grain stands for (n / bulk node density unless known better)
+  double reference_volume = 0.0; ///< d^3; volume the grain stands for (n / bulk node density unless known better)
 
   int n_nodes() const { return static_cast<int>(position.size()); }
 };

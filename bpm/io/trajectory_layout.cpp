@@ -9,7 +9,8 @@ namespace boba::trajectory {
 
 std::vector<std::string> growing_values(const hdf5::File& file) {
   std::vector<std::string> names;
-  for (const char* name : {position, image, velocity, edges, box_origin, strain, streaming_rate, grain_centre, grain_stress}) {
+  for (const char* name :
+       {position, image, velocity, edges, box_origin, strain, streaming_rate, grain_centre, grain_stress}) {
     const bool optional = name == velocity || name == streaming_rate;
     if (!optional || file.has(name)) {
       names.push_back(std::string(name) + "/value");

@@ -22,8 +22,7 @@ constexpr Real contact_force(Scalar k, Scalar k3, Scalar gamma, Scalar diameter,
 }
 
 /// Elastic energy of that contact, k (d-r)^2 / 2 + k3 (d-r)^4 / 4 (k d^2).
-template <class Real, class Scalar>
-constexpr Real contact_energy(Scalar k, Scalar k3, Scalar diameter, Real r) {
+template <class Real, class Scalar> constexpr Real contact_energy(Scalar k, Scalar k3, Scalar diameter, Real r) {
   const Real overlap = diameter - r;
   const Real square = overlap * overlap;
   return Scalar(0.5) * k * square + Scalar(0.25) * k3 * square * square;

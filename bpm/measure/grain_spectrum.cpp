@@ -46,7 +46,8 @@ int padded(int n) {
 } // namespace
 
 SpectrumPlan::SpectrumPlan(const Box& box, const ReciprocalLattice& lattice)
-    : box_(box), n_vectors_(static_cast<double>(lattice.n_vectors())), n_rows_(static_cast<double>(lattice.rows().size())) {
+    : box_(box), n_vectors_(static_cast<double>(lattice.n_vectors())),
+      n_rows_(static_cast<double>(lattice.rows().size())) {
   for (const ReciprocalRow& row : lattice.rows()) {
     n_max_[0] = std::max(n_max_[0], std::abs(row.n1));
     n_max_[1] = std::max(n_max_[1], std::abs(row.n2));
@@ -75,8 +76,8 @@ SpectrumPlan::Block SpectrumPlan::spread(std::span<const Vector3> nodes) const {
   Block block;
   for (int axis = 0; axis < 3; ++axis) {
     block.first[axis] = static_cast<std::int64_t>(std::ceil(low[axis] - 0.5 * width));
-    block.size[axis] = static_cast<int>(static_cast<std::int64_t>(std::ceil(high[axis] - 0.5 * width)) -
-                                        block.first[axis]) + width;
+    block.size[axis] =
+        static_cast<int>(static_cast<std::int64_t>(std::ceil(high[axis] - 0.5 * width)) - block.first[axis]) + width;
   }
   block.size[2] = padded(block.size[2]);
   block.value.assign(static_cast<std::size_t>(block.size[0]) * block.size[1] * block.size[2], 0.0);
@@ -94,7 +95,8 @@ SpectrumPlan::Block SpectrumPlan::spread(std::span<const Vector3> nodes) const {
       for (int b = 0; b < width; ++b) {
         const double ab = phi[0][a] * phi[1][b];
         double* out = block.value.data() +
-                      (static_cast<std::size_t>(corner[0] + a) * block.size[1] + corner[1] + b) * block.size[2] + corner[2];
+                      (static_cast<std::size_t>(corner[0] + a) * block.size[1] + corner[1] + b) * block.size[2] +
+                      corner[2];
         for (int c = 0; c < width; ++c) {
           out[c] += ab * phi[2][c];
         }
@@ -149,8 +151,8 @@ void SpectrumPlan::transform(const Block& block, std::span<const ReciprocalRow> 
     phases(1, row.n2, block.first[1], nb, c_re, c_im);
     multiply_row(c_re, c_im, nb, {plane_re, plane_im, nc}, nc, line_re, line_im);
     const int first = row.low + n_max_[2];
-    multiply_row(line_re, line_im, nc, {block.phase_re.data() + first, block.phase_im.data() + first, stride3}, row.size(), re.data() + v,
-                 im.data() + v);
+    multiply_row(line_re, line_im, nc, {block.phase_re.data() + first, block.phase_im.data() + first, stride3},
+                 row.size(), re.data() + v, im.data() + v);
     v += static_cast<std::size_t>(row.size());
   }
 }
@@ -158,8 +160,8 @@ void SpectrumPlan::transform(const Block& block, std::span<const ReciprocalRow> 
 double SpectrumPlan::cost(std::size_t n_nodes, const std::array<int, 3>& size) const {
   const auto [na, nb, nc] = size;
   const double plane = static_cast<double>(nb) * nc, spread_products = width * width * width;
-  return static_cast<double>(n_nodes) * spread_products / 4.0 + (n_max_[0] + 1.0) * na * plane / 2.0 +
-         n_rows_ * plane + n_vectors_ * nc;
+  return static_cast<double>(n_nodes) * spread_products / 4.0 + (n_max_[0] + 1.0) * na * plane / 2.0 + n_rows_ * plane +
+         n_vectors_ * nc;
 }
 
 std::array<int, 3> SpectrumPlan::block_size(const Vector3& extent) const {

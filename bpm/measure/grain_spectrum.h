@@ -17,10 +17,10 @@ namespace boba::measure {
 ///
 ///     F(n) = prod_i 1/phi^(n_i)  sum_abc g_abc exp(2 pi i (n_1 a/M_1 + n_2 b/M_2 + n_3 c/M_3)),
 ///
-/// with phi^ the kernel's Fourier integral. Only the part of the grid that the grain covers is there, so the sum is done
-/// direction by direction over that small block; a fast transform of the whole cell's grid for each grain would cost
-/// more. Relative error of F against its root mean square: below 1e-10.
-/// Source: Barnett, Magland, af Klinteberg, SIAM J. Sci. Comput. 41, C479 (2019): kernel exp(beta (sqrt(1 - x^2) - 1)).
+/// with phi^ the kernel's Fourier integral. Only the part of the grid that the grain covers is there, so the sum is
+/// done direction by direction over that small block; a fast transform of the whole cell's grid for each grain would
+/// cost more. Relative error of F against its root mean square: below 1e-10. Source: Barnett, Magland, af Klinteberg,
+/// SIAM J. Sci. Comput. 41, C479 (2019): kernel exp(beta (sqrt(1 - x^2) - 1)).
 class SpectrumPlan {
 public:
   SpectrumPlan(const Box& box, const ReciprocalLattice& lattice);
@@ -29,7 +29,7 @@ public:
   struct Block {
     std::array<std::int64_t, 3> first{}; ///< grid point of the block's first element
     std::array<int, 3> size{};
-    std::vector<double> value;            ///< [a][b][c]
+    std::vector<double> value;              ///< [a][b][c]
     std::vector<double> phase_re, phase_im; ///< [c][n3]: exp(2 pi i n3 c / M_3) / phi^(n3)
   };
   Block spread(std::span<const Vector3> nodes) const;

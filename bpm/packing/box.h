@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-
 #include <array>
 #include <optional>
 
@@ -46,8 +45,8 @@ public:
 
   /// Replaces the cell matrix (upper triangular, positive diagonal); the origin stays.
   void set_h(const Matrix3& h);
-  /// Brings |xy| <= Lx/2, |yz| <= Ly/2 and |xz| <= Lx/2 by adding lattice vectors to b and c: the same lattice, other cell
-  /// vectors. Returns true when anything changed. Unwrapped positions and forces do not change.
+  /// Brings |xy| <= Lx/2, |yz| <= Ly/2 and |xz| <= Lx/2 by adding lattice vectors to b and c: the same lattice, other
+  /// cell vectors. Returns true when anything changed. Unwrapped positions and forces do not change.
   bool flip();
 
 private:

@@ -35,8 +35,8 @@ struct Block {
   int n_grains() const;
 };
 
-/// Which lane of which block each grain lives in. A block's lanes are as many for all grains that can share blocks, whoever
-/// else is there: a grain's numbers must not depend on that.
+/// Which lane of which block each grain lives in. A block's lanes are as many for all grains that can share blocks,
+/// whoever else is there: a grain's numbers must not depend on that.
 ///
 /// An array is [block][node][component][lane]; component c of node i of grain g is at
 /// first(g) + (3 i + c) stride(g). Blocks hold grains of one template, and grains with alpha = 0 are kept

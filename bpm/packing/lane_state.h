@@ -32,7 +32,8 @@ public:
 
   /// Begins anew with the layout as it is now: all grains undeformed at the origin, at rest.
   void reset(const Packing& packing);
-  /// Bytes of a node's coordinates, velocity and force as they are stored; the quanta are the packing's, not the rank's.
+  /// Bytes of a node's coordinates, velocity and force as they are stored; the quanta are the packing's, not the
+  /// rank's.
   std::size_t node_bytes() const;
   /// Copies a grain's nodes as they are stored, one after the other. The grain's origin is not among them.
   void pack(int grain, std::byte* bytes) const;

@@ -6,7 +6,6 @@
 #include "bpm/packing/snapshot.h"
 
 #include <Eigen/Geometry>
-
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -17,13 +16,14 @@ namespace boba {
 struct Grain {
   int template_index = 0;
   int species = 0;
-  double alpha = 0.0; ///< many-body coefficient, k d
+  double alpha = 0.0;        ///< many-body coefficient, k d
   std::int64_t molecule = 0; ///< number shown in files
 };
 
 /// Everything a run starts from: the cell, the grains and every node's position and velocity.
 ///
-/// Nodes are numbered grain by grain, in template order inside a grain. Positions are unwrapped and each grain is whole.
+/// Nodes are numbered grain by grain, in template order inside a grain. Positions are unwrapped and each grain is
+/// whole.
 struct Packing {
   Box box;
   std::vector<std::shared_ptr<const GrainTemplate>> templates;

@@ -3,10 +3,9 @@
 
 #include "bpm/parallel/star_forest.h"
 
-#include <mpi.h>
-
 #include <algorithm>
 #include <cstdlib>
+#include <mpi.h>
 #include <stdexcept>
 #include <thread>
 #include <unistd.h>
@@ -35,7 +34,8 @@ MessagePassing::MessagePassing() {
     ranks_ = Ranks::of_world();
     const char* started = std::getenv("PMI_SIZE");
     if (!ranks_.many() && started != nullptr && std::strtol(started, nullptr, 10) > 1) {
-      throw std::invalid_argument("started several times by a launcher that MPI does not know; use mpirun, or srun --mpi=pmix");
+      throw std::invalid_argument(
+          "started several times by a launcher that MPI does not know; use mpirun, or srun --mpi=pmix");
     }
   }
 }

@@ -2,10 +2,9 @@
 // The one file of the engine that knows PETSc: a module of its own.
 #include "bpm/parallel/star_forest.h"
 
-#include <petscsf.h>
-
 #include <algorithm>
 #include <map>
+#include <petscsf.h>
 #include <stdexcept>
 #include <string>
 
@@ -61,9 +60,7 @@ public:
     leaves_ = leaves;
     check(PetscSFBcastBegin(forest_, item_type(bytes), roots, leaves, MPI_REPLACE), "beginning to copy");
   }
-  void end() override {
-    check(PetscSFBcastEnd(forest_, item_type(bytes_), roots_, leaves_, MPI_REPLACE), "copying");
-  }
+  void end() override { check(PetscSFBcastEnd(forest_, item_type(bytes_), roots_, leaves_, MPI_REPLACE), "copying"); }
   void collect(std::size_t bytes, const void* leaves, void* roots) override {
     check(PetscSFReduceBegin(forest_, item_type(bytes), leaves, roots, MPI_REPLACE), "beginning to collect");
     check(PetscSFReduceEnd(forest_, item_type(bytes), leaves, roots, MPI_REPLACE), "collecting");

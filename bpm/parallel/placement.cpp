@@ -104,9 +104,8 @@ std::uint32_t hilbert_place(const Vector3& fractional) {
 
 std::vector<int> along_curve(std::span<const int> grains, std::span<const Vector3> fractional) {
   std::vector<int> order(grains.begin(), grains.end());
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return hilbert_place(fractional[a]) < hilbert_place(fractional[b]);
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return hilbert_place(fractional[a]) < hilbert_place(fractional[b]); });
   return order;
 }
 

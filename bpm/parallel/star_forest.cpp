@@ -35,7 +35,8 @@ const StarForestModule* load() {
     }
   }
   throw std::runtime_error(fmt::format("a run on several ranks needs boba_petsc.so in {}{}",
-                                       (root / "lib/boba").string(), reasons.empty() ? ", which is not there" : reasons));
+                                       (root / "lib/boba").string(),
+                                       reasons.empty() ? ", which is not there" : reasons));
 }
 
 } // namespace

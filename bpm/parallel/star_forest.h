@@ -14,14 +14,15 @@ struct RootPlace {
   int rank, index;
 };
 
-/// Copies of other ranks' values: *roots* are owned, *leaves* are copies of them. A PetscSF in a form without types of PETSc.
+/// Copies of other ranks' values: *roots* are owned, *leaves* are copies of them. A PetscSF in a form without types of
+/// PETSc.
 ///
 /// Everything is collective: all ranks call it, in the same order.
 class StarForest {
 public:
   virtual ~StarForest() = default;
-  /// Roots to leaves, items of `bytes` each (a multiple of 4). Neither array may be touched between begin and end, but for
-  /// roots without leaves and places that are no leaf.
+  /// Roots to leaves, items of `bytes` each (a multiple of 4). Neither array may be touched between begin and end, but
+  /// for roots without leaves and places that are no leaf.
   virtual void begin(std::size_t bytes, const void* roots, void* leaves) = 0;
   virtual void end() = 0;
   /// Leaves to roots: each root takes the value of one of its leaves; roots without leaves keep theirs.

@@ -94,7 +94,7 @@ struct Scene {
   std::string title;
   std::uint64_t seed = 1;
   SimulationOptions options;
-  bool automatic_dt = false; ///< options.dt is to come from the packing: see settle_time_step
+  bool automatic_dt = false;       ///< options.dt is to come from the packing: see settle_time_step
   std::optional<double> wall_time; ///< s
   OutputPlan output;
   std::vector<SceneMeasure> measures;

@@ -156,10 +156,10 @@ std::optional<PackingStep> settle_time_step(Scene& scene, const Packing& packing
 
 void check_time_step(const Scene& scene, const std::optional<PackingStep>& stable) {
   if (stable && !(scene.options.dt < stable->dt)) {
-    throw InputError(fmt::format("{}: run.dt = {:g} tau: the bonds of grains with alpha = {:g} are stable only below {:.4g} tau; "
-                                 "run.dt = \"auto\" takes {:.4g}",
-                                 scene.path.string(), scene.options.dt, stable->alpha, stable->dt,
-                                 automatic_share * stable->dt));
+    throw InputError(
+        fmt::format("{}: run.dt = {:g} tau: the bonds of grains with alpha = {:g} are stable only below {:.4g} tau; "
+                    "run.dt = \"auto\" takes {:.4g}",
+                    scene.path.string(), scene.options.dt, stable->alpha, stable->dt, automatic_share * stable->dt));
   }
 }
 

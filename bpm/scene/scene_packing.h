@@ -22,7 +22,8 @@ double resolve_alpha(const AlphaChoice& choice, const Material& material, const 
 /// \throws InputError, std::invalid_argument, std::runtime_error from whatever part refuses.
 Packing make_start(const Scene& scene, const PoissonTable& table, const Narrator& narrate);
 
-/// The time step that dt = "auto" stands for, as a share of the largest stable one. Source: docs/stability.md, "Time step".
+/// The time step that dt = "auto" stands for, as a share of the largest stable one. Source: docs/stability.md, "Time
+/// step".
 inline constexpr double automatic_share = 0.6;
 
 /// Puts the step that `dt = "auto"` stands for into the options, and into the overrides, so that whatever reads the

@@ -167,9 +167,9 @@ void check_hertz(const SceneTables& tables, const Scene& scene) {
   if (scene.material.hertz_modulus == 0.0) {
     return;
   }
-  const bool spheres = !scene.templates.empty() &&
-                       std::all_of(scene.templates.begin(), scene.templates.end(),
-                                   [](const SceneTemplate& t) { return is_single_node(t.spec); });
+  const bool spheres =
+      !scene.templates.empty() && std::all_of(scene.templates.begin(), scene.templates.end(),
+                                              [](const SceneTemplate& t) { return is_single_node(t.spec); });
   if (!spheres) {
     tables.table("material").fail("hertz_modulus", "is for spheres of one node: every [[template]] needs nodes = 1");
   }

@@ -25,7 +25,7 @@ struct SceneKey {
   std::string fallback; ///< how the default reads in the documentation; "" when the key may be absent
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
-  bool above_lowest = false; ///< the lowest value itself is not allowed
+  bool above_lowest = false;        ///< the lowest value itself is not allowed
   std::vector<std::string> choices; ///< of a choice; of a number: words that may stand in its place
 
   /// "a number above 0 and at most 1 (tau)": the end of every message about this key.

@@ -55,9 +55,10 @@ std::vector<std::shared_ptr<const GrainTemplate>> networks_of(const Topology& to
       networks[t].bonds.push_back({std::min(i, j), std::max(i, j), bond.r0});
       const Vector3 d = first.position[bond.i] - first.position[bond.j];
       if ((d - first.box.minimum_image(d)).norm() > 1e-6 * bond.r0) {
-        throw InputError(fmt::format("{}: nodes {} and {} are bonded across the boundary of the cell; a periodic specimen "
-                                     "cannot be taken from a trajectory",
-                                     file.string(), topology.id[bond.i], topology.id[bond.j]));
+        throw InputError(
+            fmt::format("{}: nodes {} and {} are bonded across the boundary of the cell; a periodic specimen "
+                        "cannot be taken from a trajectory",
+                        file.string(), topology.id[bond.i], topology.id[bond.j]));
       }
     }
   }

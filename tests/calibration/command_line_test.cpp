@@ -57,7 +57,8 @@ TEST(CommandLine, WrongInputEndsWithTwoAndSaysWhatIsAllowed) {
 }
 
 TEST(CommandLine, ASolveThatFailsEndsWithOneAndGivesNoNumber) {
-  const Outcome outcome = run("table --alpha 2 --nodes 500 --seeds 1 --tolerance 1e-300"); // beyond any linear algebra library
+  const Outcome outcome =
+      run("table --alpha 2 --nodes 500 --seeds 1 --tolerance 1e-300"); // beyond any linear algebra library
   EXPECT_EQ(outcome.code, 1) << outcome.output;
   EXPECT_NE(outcome.output.find("last residuals"), std::string::npos) << outcome.output;
   EXPECT_EQ(outcome.output.find("4.0"), std::string::npos) << outcome.output;

@@ -102,8 +102,7 @@ TEST(Cylinder, StaticAndDynamicSqueezesAgree) {
   const GrainTemplate cylinder = test_cylinder(4.0, 16.0);
   const CylinderTest test{.alpha = 2.0};
   const BulkDensity bulk = bulk_density(test_box(2048));
-  const CylinderResult rest = static_cylinder(cylinder, test, bulk),
-                       run = dynamic_cylinder(cylinder, test, bulk);
+  const CylinderResult rest = static_cylinder(cylinder, test, bulk), run = dynamic_cylinder(cylinder, test, bulk);
   EXPECT_NEAR(run.young(), rest.young(), 1e-3 * rest.young());
   EXPECT_NEAR(run.poisson(), rest.poisson(), 1e-3);
   EXPECT_NEAR(rest.density_area, M_PI * 16.0, 0.05 * M_PI * 16.0);

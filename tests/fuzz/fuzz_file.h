@@ -14,5 +14,6 @@ std::filesystem::path file_of(std::span<const std::uint8_t> bytes);
 
 } // namespace boba::fuzz
 
-/// What each target defines: reads the bytes as its format. Refusals (InputError) are caught, anything else is a finding.
+/// What each target defines: reads the bytes as its format. Refusals (InputError) are caught, anything else is a
+/// finding.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

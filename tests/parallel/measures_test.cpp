@@ -15,9 +15,10 @@ std::vector<std::string> run_into(const std::string& output, const std::vector<s
   for (const char* assignment :
        {"stage.0.packing_fraction=0.3", "stage.1.rate=2e-2", "stage.1.pressure_tolerance=0.1",
         "stage.1.kinetic_tolerance=0.2", "stage.2.rate=1e-2", "stage.2.strain=0.1",
-        ("measure=[{what = \"stress, packing-fraction, shape, scattering, contacts\", every_strain = 0.04, q_max = 2.0, "
-        "points = 20000, sensitivity = true}, {what = \"order, motion\", every_strain = 0.03, neighbours = "
-        "\"voronoi\"}]")}) {
+        ("measure=[{what = \"stress, packing-fraction, shape, scattering, contacts\", every_strain = 0.04, q_max = "
+         "2.0, "
+         "points = 20000, sensitivity = true}, {what = \"order, motion\", every_strain = 0.03, neighbours = "
+         "\"voronoi\"}]")}) {
     arguments.insert(arguments.end(), {"--set", assignment});
   }
   arguments.insert(arguments.end(), more.begin(), more.end());

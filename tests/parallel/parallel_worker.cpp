@@ -98,7 +98,8 @@ Case case_of(const std::string& name, const Ranks& ranks) {
   } else if (name == "velocities") {
     shear.remap = Remap::velocities;
   } else if (name == "compress") {
-    c.stages = {CompressStage{.barostat = {.pressure = 0.2}, .rate = 4e-3, .pressure_tolerance = 0.1, .kinetic_tolerance = 0.5}};
+    c.stages = {CompressStage{
+        .barostat = {.pressure = 0.2}, .rate = 4e-3, .pressure_tolerance = 0.1, .kinetic_tolerance = 0.5}};
     return c;
   } else if (name == "walls" || name == "clamps") {
     const Box open({-20, -20, -20}, {40, 40, 40}, Vector3::Zero(), {false, false, false});
@@ -114,7 +115,8 @@ Case case_of(const std::string& name, const Ranks& ranks) {
       }
     }
     const bool walls = name == "walls";
-    c.stages = {PressStage{.ends = walls ? PressStage::Ends::walls : PressStage::Ends::clamps, .velocity = 2e-2, .strain = 0.05}};
+    c.stages = {PressStage{
+        .ends = walls ? PressStage::Ends::walls : PressStage::Ends::clamps, .velocity = 2e-2, .strain = 0.05}};
     return c;
   }
   c.stages = {shear};

@@ -2,10 +2,9 @@
 #include "bpm/parallel/placement.h"
 #include "tests/support/small_packings.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cstdlib>
+#include <gtest/gtest.h>
 #include <map>
 
 namespace boba::test {

@@ -62,8 +62,8 @@ PlainForces plain_forces(const Packing& packing, const Material& m, int n_images
       bonded.insert({j, i});
       const Pair pair = pair_of(x[i], x[j], v[i], v[j]);
       const Real q = (volume[bond.i] + volume[bond.j]) / (volume0[bond.i] + volume0[bond.j]);
-      const Real f = m.k * (bond.r0 - pair.r) +
-                     packing.grains[g].alpha * (std::cbrt(q) - pair.r / bond.r0) - m.gamma * pair.vn;
+      const Real f =
+          m.k * (bond.r0 - pair.r) + packing.grains[g].alpha * (std::cbrt(q) - pair.r / bond.r0) - m.gamma * pair.vn;
       add(sums, i, pair, f, 1.0);
       add(sums, j, pair, -f, 0.0);
     }

@@ -8,16 +8,16 @@
 
 namespace boba::test {
 
-/// Forces on every node and the virial sum r_ij f_ij, by the plainest loops there are: every pair, every image, long double.
-/// The oracle of the lane kernels and of the contact search; a few hundred nodes at most.
+/// Forces on every node and the virial sum r_ij f_ij, by the plainest loops there are: every pair, every image, long
+/// double. The oracle of the lane kernels and of the contact search; a few hundred nodes at most.
 struct PlainForces {
   std::vector<Vector3> force;
   Matrix3 virial = Matrix3::Zero();
   int n_contacts = 0;
 };
 
-/// `n_images`: how many cell translations each way are looked at. `velocity_of_cell`: d/dt of the cell matrix that images
-/// move with.
+/// `n_images`: how many cell translations each way are looked at. `velocity_of_cell`: d/dt of the cell matrix that
+/// images move with.
 PlainForces plain_forces(const Packing& packing, const Material& material, int n_images = 2,
                          const Matrix3& velocity_of_cell = Matrix3::Zero());
 

@@ -14,11 +14,10 @@ namespace boba {
 
 /// Evaluates the forces of stored frames anew, for their stress.
 ///
-/// sigma = -(1/V) sum (m v v + r_ij f_ij) over bonds and contacts. A run evaluates its damping with the velocities half a
-/// step before the frame, v(n-1/2) = v(n) - dt/(2m) f(n); these are found by iteration, so that the result is the run's
-/// own up to the motion of the cell within the last step. Without velocities damping and kinetic parts are missing.
-/// Walls and clamps are not stored in frames and play no part.
-/// Source: docs/notation.md, "Stress".
+/// sigma = -(1/V) sum (m v v + r_ij f_ij) over bonds and contacts. A run evaluates its damping with the velocities half
+/// a step before the frame, v(n-1/2) = v(n) - dt/(2m) f(n); these are found by iteration, so that the result is the
+/// run's own up to the motion of the cell within the last step. Without velocities damping and kinetic parts are
+/// missing. Walls and clamps are not stored in frames and play no part. Source: docs/notation.md, "Stress".
 class FrameStress {
 public:
   /// \param packing the networks and grains of the frames; its positions only say which rank does which grains

@@ -125,7 +125,9 @@ std::vector<double> MeasureTables::save_motion() const {
   if (!past_) {
     return saved;
   }
-  const auto put = [&](const auto& numbers) { saved.insert(saved.end(), numbers.data(), numbers.data() + numbers.size()); };
+  const auto put = [&](const auto& numbers) {
+    saved.insert(saved.end(), numbers.data(), numbers.data() + numbers.size());
+  };
   put(past_->box.h());
   put(past_->box.origin());
   for (const bool periodic : past_->box.periodic()) {
@@ -170,7 +172,8 @@ void MeasureTables::restore_motion(const std::vector<double>& saved) {
   }
   const Vector3 origin = take_vector(), periodic = take_vector();
   const double strain = take();
-  Box box(origin, h.diagonal(), {h(0, 1), h(0, 2), h(1, 2)}, {periodic[0] != 0.0, periodic[1] != 0.0, periodic[2] != 0.0});
+  Box box(origin, h.diagonal(), {h(0, 1), h(0, 2), h(1, 2)},
+          {periodic[0] != 0.0, periodic[1] != 0.0, periodic[2] != 0.0});
   const auto n = static_cast<std::size_t>(topology_.n_grains());
   std::vector<Vector3> centres(n), displacements(n);
   std::generate(centres.begin(), centres.end(), take_vector);

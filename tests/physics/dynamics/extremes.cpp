@@ -6,9 +6,8 @@
 #include "bpm/measure/packing_fraction.h"
 #include "tests/support/small_packings.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 #include <optional>
 
 namespace boba::test {
@@ -49,11 +48,16 @@ Outcome run(Packing packing, const std::vector<Stage>& stages, double dt = 0.1) 
 }
 
 Packing grains_in(double edge, double alpha, int n = 9, double speed = 0.0) {
-  return small_packing({.box = Box({0, 0, 0}, {edge, edge, edge}), .n_grains = n, .alpha = alpha, .jitter = 0.0, .speed = speed});
+  return small_packing(
+      {.box = Box({0, 0, 0}, {edge, edge, edge}), .n_grains = n, .alpha = alpha, .jitter = 0.0, .speed = speed});
 }
 
 CompressStage compression(double pressure) {
-  return {.barostat = {.pressure = pressure}, .rate = 2e-3, .pressure_tolerance = 0.02, .kinetic_tolerance = 0.2, .max_time = 5e4};
+  return {.barostat = {.pressure = pressure},
+          .rate = 2e-3,
+          .pressure_tolerance = 0.02,
+          .kinetic_tolerance = 0.2,
+          .max_time = 5e4};
 }
 
 /// Share of the cell that is within d/2 of a node or inside a grain's hull.
@@ -66,10 +70,11 @@ double packing_fraction_of(const Snapshot& snapshot, const std::vector<std::int6
   return measure::packing_fraction(snapshot.box, grains, hulls, {.n_points = 20000}).both.value;
 }
 
-/// P = P~ E / (2 - 2 nu^2) at P~ = 1 for nu = 0.40, 0, -0.52, with the published E = 0.58, 4.05, 8.30 k/d; for the softest also
-/// P~ = 4, where even the gaps between the rough surfaces of such small grains are gone.
+/// P = P~ E / (2 - 2 nu^2) at P~ = 1 for nu = 0.40, 0, -0.52, with the published E = 0.58, 4.05, 8.30 k/d; for the
+/// softest also P~ = 4, where even the gaps between the rough surfaces of such small grains are gone.
 TEST(Extremes, CompressionUntilNoGapIsLeft) {
-  for (const auto& [alpha, pressure] : {std::pair(-0.8, 0.345), std::pair(-0.8, 1.38), std::pair(2.0, 2.03), std::pair(12.0, 5.69)}) {
+  for (const auto& [alpha, pressure] :
+       {std::pair(-0.8, 0.345), std::pair(-0.8, 1.38), std::pair(2.0, 2.03), std::pair(12.0, 5.69)}) {
     const Packing packing = grains_in(14.0, alpha);
     const Outcome outcome = run(packing, {compression(pressure)});
     ASSERT_FALSE(outcome.blow_up) << alpha << ": " << *outcome.blow_up;
@@ -81,8 +86,10 @@ TEST(Extremes, CompressionUntilNoGapIsLeft) {
 
 TEST(Extremes, FastShearWithManyFlips) {
   for (const Remap remap : {Remap::positions, Remap::velocities}) {
-    const Outcome outcome = run(grains_in(12.0, 2.0), {compression(0.1), ShearStage{.rate = 1e-2, .strain = 8.0, .remap = remap,
-                                                                                 .barostat = Barostat{.pressure = 0.1, .gain = 0.05}}});
+    const Outcome outcome = run(
+        grains_in(12.0, 2.0),
+        {compression(0.1),
+         ShearStage{.rate = 1e-2, .strain = 8.0, .remap = remap, .barostat = Barostat{.pressure = 0.1, .gain = 0.05}}});
     ASSERT_FALSE(outcome.blow_up) << *outcome.blow_up;
     EXPECT_LE(std::abs(outcome.end.box.xy()), 0.5 * outcome.end.box.lengths()[0] * (1.0 + 1e-9));
     EXPECT_NEAR(outcome.end.strain, 8.0, 1e-9);
@@ -91,7 +98,8 @@ TEST(Extremes, FastShearWithManyFlips) {
 
 /// In a cell one grain wide and many long a small strain flips it: every dozen steps here, through many widths of tilt.
 TEST(Extremes, FlipsEveryFewSteps) {
-  Packing packing = small_packing({.box = Box({0, 0, 0}, {6, 72, 6}), .n_grains = 11, .jitter = 0.0, .speed = 0.0, .least_distance = 5.0});
+  Packing packing = small_packing(
+      {.box = Box({0, 0, 0}, {6, 72, 6}), .n_grains = 11, .jitter = 0.0, .speed = 0.0, .least_distance = 5.0});
   Stepper stepper(std::move(packing), {}, {});
   stepper.start();
   int flips = 0;
@@ -112,7 +120,8 @@ TEST(Extremes, FlipsEveryFewSteps) {
   EXPECT_LT(stepper.largest_stretch().ratio, 3.0);
 }
 
-/// Close to the limit at -1.00 short bonds collapse and their ends turn round at every step; that stays with a few nodes.
+/// Close to the limit at -1.00 short bonds collapse and their ends turn round at every step; that stays with a few
+/// nodes.
 TEST(Extremes, NextToTheLimitOfRigidity) {
   for (const double alpha : {-0.95, -1.0}) {
     const Outcome outcome = run(grains_in(14.0, alpha), {compression(0.02), HoldStage{.time = 100.0}});
@@ -121,7 +130,8 @@ TEST(Extremes, NextToTheLimitOfRigidity) {
 }
 
 TEST(Extremes, ThirtyPercentOverlapAtTheStart) {
-  Packing packing = small_packing({.box = Box({0, 0, 0}, {16, 16, 16}), .n_grains = 9, .jitter = 0.0, .speed = 0.0, .least_distance = 0.7 * 5.0});
+  Packing packing = small_packing(
+      {.box = Box({0, 0, 0}, {16, 16, 16}), .n_grains = 9, .jitter = 0.0, .speed = 0.0, .least_distance = 0.7 * 5.0});
   const Outcome outcome = run(std::move(packing), {HoldStage{.time = 300.0}});
   if (!outcome.blow_up) {
     EXPECT_LT(outcome.totals.kinetic_energy, 1.0);
@@ -130,7 +140,8 @@ TEST(Extremes, ThirtyPercentOverlapAtTheStart) {
 
 TEST(Extremes, GrainsThroughEachOtherAtHighSpeed) {
   for (const double speed : {0.5, 2.0, 8.0}) {
-    Packing packing = small_packing({.box = Box({0, 0, 0}, {30, 30, 30}), .n_grains = 2, .jitter = 0.0, .speed = 0.0, .least_distance = 8.0});
+    Packing packing = small_packing(
+        {.box = Box({0, 0, 0}, {30, 30, 30}), .n_grains = 2, .jitter = 0.0, .speed = 0.0, .least_distance = 8.0});
     const std::int64_t n = packing.first_nodes()[1];
     Vector3 first = Vector3::Zero(), second = Vector3::Zero();
     for (std::int64_t i = 0; i < n; ++i) {
@@ -149,15 +160,25 @@ TEST(Extremes, GrainsThroughEachOtherAtHighSpeed) {
 
 TEST(Extremes, WallsDrivenThroughAGrain) {
   for (const double velocity : {2e-3, 0.05}) {
-    Packing packing = small_packing({.box = Box({0, 0, 0}, {40, 40, 40}, {0, 0, 0}, {false, false, false}), .n_grains = 1, .jitter = 0.0, .speed = 0.0});
+    Packing packing = small_packing({.box = Box({0, 0, 0}, {40, 40, 40}, {0, 0, 0}, {false, false, false}),
+                                     .n_grains = 1,
+                                     .jitter = 0.0,
+                                     .speed = 0.0});
     run(std::move(packing), {PressStage{.velocity = velocity, .strain = 0.85}});
   }
 }
 
 TEST(Extremes, OneAndTwoGrainsInABoxBarelyLarger) {
   for (const int n : {1, 2}) {
-    Packing packing = small_packing({.box = Box({0, 0, 0}, {5.2 * n, 5.2, 5.2}), .n_grains = n, .jitter = 0.0, .speed = 0.0, .least_distance = 5.0});
-    const Outcome outcome = run(std::move(packing), {compression(0.1), ShearStage{.rate = 2e-3, .strain = 3.0, .barostat = Barostat{.pressure = 0.1, .gain = 0.05}}});
+    Packing packing = small_packing({.box = Box({0, 0, 0}, {5.2 * n, 5.2, 5.2}),
+                                     .n_grains = n,
+                                     .jitter = 0.0,
+                                     .speed = 0.0,
+                                     .least_distance = 5.0});
+    const Outcome outcome =
+        run(std::move(packing),
+            {compression(0.1),
+             ShearStage{.rate = 2e-3, .strain = 3.0, .barostat = Barostat{.pressure = 0.1, .gain = 0.05}}});
     ASSERT_FALSE(outcome.blow_up) << *outcome.blow_up;
     EXPECT_GT(outcome.totals.pressure, 0.0);
   }
@@ -167,7 +188,8 @@ TEST(Extremes, OneAndTwoGrainsInABoxBarelyLarger) {
 /// a little below it nothing happens.
 TEST(Extremes, AStepBeyondTheLimitIsFoundSoon) {
   for (const double alpha : {-0.8, 0.0, 2.0, 5.0, 12.0, 20.0}) {
-    const Packing packing = small_packing({.box = Box({0, 0, 0}, {40, 40, 40}), .n_grains = 1, .alpha = alpha, .jitter = 0.01, .speed = 0.01});
+    const Packing packing = small_packing(
+        {.box = Box({0, 0, 0}, {40, 40, 40}), .n_grains = 1, .alpha = alpha, .jitter = 0.01, .speed = 0.01});
     const double limit = stable_step(*packing.templates[0], {}, alpha);
     EXPECT_FALSE(run(packing, {HoldStage{.time = 3000.0 * limit}}, 0.98 * limit).blow_up) << alpha;
     for (const double factor : {1.05, 1.1, 1.3, 2.0}) {

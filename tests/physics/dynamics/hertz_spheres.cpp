@@ -3,9 +3,8 @@
 #include "bpm/dynamics/stepper.h"
 #include "bpm/grain/build_template.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 
 namespace boba::test {
 namespace {
@@ -50,8 +49,8 @@ TEST(HertzSpheres, HaveTheLatticesBulkModulus) {
   EXPECT_NEAR(stepper.affine_bulk_modulus() / modulus, 1.0, 1e-4);
 }
 
-// Two spheres that fly apart and together again across the periodic boundary: momentum stays, contacts are found however
-// far they have gone. Free flight in between is uniform.
+// Two spheres that fly apart and together again across the periodic boundary: momentum stays, contacts are found
+// however far they have gone. Free flight in between is uniform.
 TEST(HertzSpheres, CollideWhenTheyMeet) {
   auto sphere = std::make_shared<const GrainTemplate>(build_template({.n_nodes = 1}));
   Packing packing = make_packing(Box(Vector3::Zero(), Vector3::Constant(6.0)), {sphere},

@@ -4,13 +4,12 @@
 #include "bpm/dynamics/stepper.h"
 #include "tests/support/small_packings.h"
 
-#include <gtest/gtest.h>
-#include <rapidcheck.h>
-#include <rapidcheck/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <gtest/gtest.h>
 #include <numeric>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
 
 namespace boba::test {
 namespace {
@@ -60,8 +59,8 @@ void same(const Forces& a, const Forces& b, double scale = 1.0) {
   for (std::size_t i = 0; i < a.force.size(); ++i) {
     RC_ASSERT((scale * a.force[i] - b.force[i]).norm() < rounding * scale * a.largest);
   }
-  const double size = *std::max_element(a.stress.begin(), a.stress.end(),
-                                        [](double x, double y) { return std::abs(x) < std::abs(y); });
+  const double size =
+      *std::max_element(a.stress.begin(), a.stress.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
   for (std::size_t c = 0; c < 6; ++c) {
     RC_ASSERT(std::abs(scale * a.stress[c] - b.stress[c]) < 1e-10 * std::abs(scale * size));
   }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces, pressure and short runs against those that LAMMPS (the authors' branch) computed; tests/data/forces/README.txt.
+// Forces, pressure and short runs against those that LAMMPS (the authors' branch) computed;
+// tests/data/forces/README.txt.
 #include "bpm/dynamics/stepper.h"
 #include "tests/support/lammps_fixture.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 
 namespace boba::test {
 namespace {
@@ -15,7 +15,9 @@ struct Case {
   std::string alpha;
 };
 
-std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.box << " alpha " << c.alpha; }
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+  return out << c.box << " alpha " << c.alpha;
+}
 
 class LammpsForces : public testing::TestWithParam<Case> {
 protected:
@@ -48,14 +50,14 @@ TEST_P(LammpsForces, AgreeToRounding) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Fixtures, LammpsForces,
-                         testing::Values(Case{"ortho", "-0.8"}, Case{"ortho", "0"}, Case{"ortho", "2"}, Case{"ortho", "12"},
-                                         Case{"tri", "-0.8"}, Case{"tri", "0"}, Case{"tri", "2"}, Case{"tri", "12"}));
+                         testing::Values(Case{"ortho", "-0.8"}, Case{"ortho", "0"}, Case{"ortho", "2"},
+                                         Case{"ortho", "12"}, Case{"tri", "-0.8"}, Case{"tri", "0"}, Case{"tri", "2"},
+                                         Case{"tri", "12"}));
 
 /// Runs `n` steps of a fixture and compares positions and full-step velocities with LAMMPS's.
 void expect_same_run(const std::string& box, const std::string& alpha, int n, double tolerance) {
   const LammpsPacking read = fixture_packing(box, box + ".a" + alpha + ".step0.dump.gz", std::stod(alpha));
-  const LammpsFrame frame =
-      read_lammps_dump(force_data(box + ".a" + alpha + ".step" + std::to_string(n) + ".dump.gz"));
+  const LammpsFrame frame = read_lammps_dump(force_data(box + ".a" + alpha + ".step" + std::to_string(n) + ".dump.gz"));
   Stepper stepper(read.packing, {}, {});
   stepper.start();
   for (int step = 0; step < n; ++step) {
@@ -64,8 +66,7 @@ void expect_same_run(const std::string& box, const std::string& alpha, int n, do
   const Snapshot snapshot = stepper.snapshot({.velocity = true, .force = true});
   EXPECT_LT(largest_position_difference(read, snapshot.position, frame, snapshot.box), tolerance);
   EXPECT_LT(largest_difference(read, snapshot.velocity, frame, frame.velocity), tolerance);
-  const std::array<double, 6> pressure =
-      lammps_pressure(box + ".a" + alpha + ".press.txt", "step" + std::to_string(n));
+  const std::array<double, 6> pressure = lammps_pressure(box + ".a" + alpha + ".press.txt", "step" + std::to_string(n));
   for (int c = 0; c < 6; ++c) {
     EXPECT_NEAR(-stepper.totals().stress[c], pressure[c], tolerance);
   }
@@ -76,9 +77,9 @@ TEST(LammpsRun, TenSteps) {
   expect_same_run("tri", "2", 10, 1e-11);
 }
 
-// The violent start moves nodes by a tenth of d between LAMMPS's rebuilds of its neighbour list: somewhere after step 10 it
-// misses a contact for a few steps, which moves nodes by up to 6e-4. The state is not sensitive (a displacement of
-// 1e-12 does not grow), so the runs stay within 1e-3 of each other; the next test holds the late states to rounding.
+// The violent start moves nodes by a tenth of d between LAMMPS's rebuilds of its neighbour list: somewhere after step
+// 10 it misses a contact for a few steps, which moves nodes by up to 6e-4. The state is not sensitive (a displacement
+// of 1e-12 does not grow), so the runs stay within 1e-3 of each other; the next test holds the late states to rounding.
 TEST(LammpsRun, HundredStepsWithinThePeersLateList) {
   for (const char* alpha : {"2", "12"}) {
     expect_same_run("ortho", alpha, 100, 1e-3);
@@ -144,9 +145,9 @@ void shift_images(std::vector<Vector3>& positions, const Box& box, double shift)
   }
 }
 
-// Our nodes are unwrapped and carry their own streaming velocity, so a grain across the face moves with the cell; LAMMPS's
-// images move at the end of a step only and lag by one step's tilt in every force but the first. The test gives our
-// nodes that lag after the first forces.
+// Our nodes are unwrapped and carry their own streaming velocity, so a grain across the face moves with the cell;
+// LAMMPS's images move at the end of a step only and lag by one step's tilt in every force but the first. The test
+// gives our nodes that lag after the first forces.
 TEST(LammpsShear, VelocitiesRemapped) {
   for (const int n : {10, 100}) {
     LammpsPacking read = fixture_packing("tri", "tri.a2.step0.dump.gz", 2.0);

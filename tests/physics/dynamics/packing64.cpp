@@ -4,10 +4,9 @@
 #include "bpm/dynamics/stepper.h"
 #include "bpm/io/lammps_packing.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <sstream>
 
 namespace boba::test {

@@ -5,13 +5,11 @@
 #include "bpm/io/lammps_packing.h"
 #include "bpm/measure/blocking.h"
 
-#include <fmt/format.h>
-
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <sstream>
 
 namespace boba::test {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a scene may say and nobody would: the ends of the range of every number, and next to nothing where 0 is excluded.
-// The program answers, in time and in a bounded memory, or stops at its wall-time limit. One value in four is tried; all
-// of them when BOBA_ALLOWED=all.
+// What a scene may say and nobody would: the ends of the range of every number, and next to nothing where 0 is
+// excluded. The program answers, in time and in a bounded memory, or stops at its wall-time limit. One value in four is
+// tried; all of them when BOBA_ALLOWED=all.
 #include "tests/robustness/app/small_scene.h"
 #include "tests/robustness/scene/trial_scene.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <string_view>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <string_view>
 
 namespace boba::test {
 namespace {
@@ -21,7 +21,8 @@ std::vector<std::string> ends_of_range(const SceneKey& key) {
     values.push_back(key.type == SceneKey::Type::integer ? fmt::format("{:.0f}", value) : fmt::format("{:g}", value));
   };
   if (std::isfinite(key.lowest)) {
-    add(key.above_lowest ? (key.lowest == 0.0 ? 1e-320 : key.lowest * (1.0 - std::copysign(1e-9, key.lowest))) : key.lowest);
+    add(key.above_lowest ? (key.lowest == 0.0 ? 1e-320 : key.lowest * (1.0 - std::copysign(1e-9, key.lowest)))
+                         : key.lowest);
   }
   if (key.above_lowest && key.lowest == 0.0) {
     add(1e-12);
@@ -34,7 +35,8 @@ std::vector<std::string> ends_of_range(const SceneKey& key) {
 
 /// Killed when it takes longer than a minute or more than 20 GB of addresses; a thousand threads want 8.
 ProgramResult limited(std::vector<std::string> arguments, const TemporaryFolder& folder) {
-  arguments.insert(arguments.begin(), {"/usr/bin/timeout", "-s", "KILL", "60", "/usr/bin/prlimit", "--as=20000000000", BOBA_PROGRAM});
+  arguments.insert(arguments.begin(),
+                   {"/usr/bin/timeout", "-s", "KILL", "60", "/usr/bin/prlimit", "--as=20000000000", BOBA_PROGRAM});
   return run_program(arguments, (folder / "").string());
 }
 
@@ -64,7 +66,8 @@ TEST(AllowedValues, AtTheEndsOfTheirRangesHaveAnAnswer) {
         ++n_tried;
         n_right += checked.exit_code == 0;
         if (checked.exit_code == 0 && section.path != "measure") { // a thousand million points take their time
-          const ProgramResult ran = limited({"run", "scene.toml", "--quiet", "--wall-time", "0.1", "--output", "out"}, folder);
+          const ProgramResult ran =
+              limited({"run", "scene.toml", "--quiet", "--wall-time", "0.1", "--output", "out"}, folder);
           EXPECT_EQ(ran.signal, 0) << where << ran.err;
           EXPECT_TRUE(ran.exit_code == 0 || ran.exit_code == 1 || ran.exit_code == 75) << where << ran.err;
         }

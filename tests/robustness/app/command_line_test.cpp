@@ -47,14 +47,18 @@ TEST(CommandLine, AWrongSceneWritesNothingAndNamesThePlace) {
       {{"run", "scene.toml", "--set", "stage.insert.packing_fraction=0.7"}, "Allowed for these grains: at most"},
       {{"run", "scene.toml", "--set", "stage.insert.packing_fraction=1e-320"}, "from 1e-09 to 0.74"},
       {{"run", "scene.toml", "--set", "stage.2.rate=1e-320"}, "stage.2.rate = "},
-      {{"run", "scene.toml", "--set", "stage.2.strain=1e6", "--set", "stage.2.rate=1e-12"}, "steps; allowed: at most 1e+15"},
-      {{"run", "scene.toml", "--set", "template=[{ name = \"grain\", shape = \"cylinder\", radius = 500, height = 1.1, nodes = 60 }]"},
+      {{"run", "scene.toml", "--set", "stage.2.strain=1e6", "--set", "stage.2.rate=1e-12"},
+       "steps; allowed: at most 1e+15"},
+      {{"run", "scene.toml", "--set",
+        "template=[{ name = \"grain\", shape = \"cylinder\", radius = 500, height = 1.1, nodes = 60 }]"},
        "height (scaled to 60 nodes)"},
-      {{"run", "scene.toml", "--set", "template=[{ name = \"grain\", shape = \"box\", size = [2000, 2000, 2000] }]"}, "number of nodes"},
+      {{"run", "scene.toml", "--set", "template=[{ name = \"grain\", shape = \"box\", size = [2000, 2000, 2000] }]"},
+       "number of nodes"},
       {{"run", "scene.toml", "--set", "output.directory=/tmp/elsewhere"}, "relative path"},
       {{"run", "scene.toml", "--set", "output.directory=a/../../b"}, "without \"..\""},
       {{"run", "scene.toml", "--set", "species.0={ count = 4, poisson = 0.49 }"}, "not extrapolated"},
-      {{"run", "scene.toml", "--set", "species.0.alpha=-1.05"}, "species.0: alpha = -1.05: the bonded network is not stable"},
+      {{"run", "scene.toml", "--set", "species.0.alpha=-1.05"},
+       "species.0: alpha = -1.05: the bonded network is not stable"},
       {{"check", "scene.toml", "--set", "run.dt=0"}, "run.dt = 0"},
       {{"resume", "nowhere"}, "nowhere"},
       {{"plot", "nowhere"}, "nowhere"},
@@ -136,7 +140,8 @@ TEST(CommandLine, AScenesFolderIsBelowTheCurrentOneThroughLinksToo) {
   std::filesystem::create_directories(folder / "elsewhere");
   std::filesystem::create_directory_symlink(folder / "elsewhere", folder / "work/link");
   std::filesystem::copy_file(folder / "scene.toml", folder / "work/scene.toml");
-  const ProgramResult result = run_program({BOBA_PROGRAM, "run", "scene.toml", "--set", "output.directory=link/out"}, (folder / "work").string());
+  const ProgramResult result = run_program({BOBA_PROGRAM, "run", "scene.toml", "--set", "output.directory=link/out"},
+                                           (folder / "work").string());
   EXPECT_EQ(result.exit_code, 2) << result.out;
   EXPECT_TRUE(has(result.err, "output.directory") && has(result.err, "--output")) << result.err;
   EXPECT_TRUE(names_in(folder / "elsewhere").empty());
@@ -166,7 +171,8 @@ TEST(CommandLine, AnAutomaticStepIsARememberedNumber) {
   const std::string number = scene.substr(at + 15, scene.find('\n', at) - at - 15);
   EXPECT_GT(std::stod(number), 0.05);
   EXPECT_LT(std::stod(number), 0.2);
-  std::vector<std::string> again{"run", "scene.toml", "--set", "run.dt=" + number, "--set", "stage.2.strain=0.1", "--output", "again"};
+  std::vector<std::string> again{"run",   "scene.toml",         "--set",    "run.dt=" + number,
+                                 "--set", "stage.2.strain=0.1", "--output", "again"};
   ASSERT_EQ(boba(again, folder).exit_code, 0);
   expect_same_run(folder / "out", folder / "again");
   std::vector<std::string> cut = run;

@@ -35,9 +35,19 @@ private:
 };
 
 std::vector<std::string> command(const std::string& output) {
-  return {"run",   "scene.toml", "--output", output, "--quiet", "--set", "stage.2.strain=0.2",
-          "--set", "output.checkpoint.every_time=30", "--set", "output.trajectory.every_strain=0.001",
-          "--set", "measure=[{what = \"stress\", every_strain = 0.01}]"};
+  return {"run",
+          "scene.toml",
+          "--output",
+          output,
+          "--quiet",
+          "--set",
+          "stage.2.strain=0.2",
+          "--set",
+          "output.checkpoint.every_time=30",
+          "--set",
+          "output.trajectory.every_strain=0.001",
+          "--set",
+          "measure=[{what = \"stress\", every_strain = 0.01}]"};
 }
 
 std::uintmax_t bytes_below(const std::filesystem::path& folder) {

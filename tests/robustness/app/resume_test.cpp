@@ -70,7 +70,8 @@ bool has_checkpoint(const std::filesystem::path& checkpoints) {
   return false;
 }
 
-/// MDAnalysis reads each of these trajectories, and finds the frames of the first or, in a run that is not over, its first frames.
+/// MDAnalysis reads each of these trajectories, and finds the frames of the first or, in a run that is not over, its
+/// first frames.
 void expect_readable(const std::filesystem::path& whole, const std::vector<std::filesystem::path>& others,
                      const std::string& how) {
   std::vector<std::string> command{BOBA_PYTHON, BOBA_READ_RUNS, how, whole.string()};
@@ -85,9 +86,17 @@ void expect_readable(const std::filesystem::path& whole, const std::vector<std::
 TEST(Resume, AfterBeingKilled) {
   const TemporaryFolder folder;
   folder.file("scene.toml", small_scene);
-  const std::vector<std::string> often{"--quiet", "--set", "output.checkpoint.every_time=15", "--set", "stage.2.strain=1.5",
-                                       "--set", "output.dump.every_strain=0.05", "--set", "output.vtk.every_strain=0.1",
-                                       "--set", "measure=[{what = \"motion, order\", every_strain = 0.05}]"};
+  const std::vector<std::string> often{"--quiet",
+                                       "--set",
+                                       "output.checkpoint.every_time=15",
+                                       "--set",
+                                       "stage.2.strain=1.5",
+                                       "--set",
+                                       "output.dump.every_strain=0.05",
+                                       "--set",
+                                       "output.vtk.every_strain=0.1",
+                                       "--set",
+                                       "measure=[{what = \"motion, order\", every_strain = 0.05}]"};
   run_alone(folder, often);
   const char* asked = std::getenv("BOBA_KILLS");
   const int n_wanted = asked != nullptr ? std::atoi(asked) : 12;
@@ -103,7 +112,8 @@ TEST(Resume, AfterBeingKilled) {
     const std::string out = "killed" + std::to_string(n_rounds++);
     std::vector<std::string> run{"run", "scene.toml", "--output", out};
     run.insert(run.end(), often.begin(), often.end());
-    ProgramResult result = boba(run, folder, Disturbance{moment(random), SIGKILL, (folder / out / "checkpoints").string()});
+    ProgramResult result =
+        boba(run, folder, Disturbance{moment(random), SIGKILL, (folder / out / "checkpoints").string()});
     if (!has_checkpoint(folder / out / "checkpoints")) { // killed before there was anything to go on from
       std::filesystem::remove_all(folder / out);
       continue;
@@ -111,8 +121,9 @@ TEST(Resume, AfterBeingKilled) {
     while (result.signal == SIGKILL) {
       ++n_kills;
       keep(out, after_kills);
-      result = n_kills < n_wanted ? boba({"resume", out, "--quiet"}, folder, Disturbance{0.05 + moment(random), SIGKILL})
-                                  : boba({"resume", out, "--quiet"}, folder);
+      result = n_kills < n_wanted
+                   ? boba({"resume", out, "--quiet"}, folder, Disturbance{0.05 + moment(random), SIGKILL})
+                   : boba({"resume", out, "--quiet"}, folder);
       ASSERT_TRUE(result.signal == SIGKILL || result.exit_code == 0) << result.err;
     }
     ASSERT_EQ(result.exit_code, 0) << result.err;

@@ -5,9 +5,8 @@
 #include "bpm/io/trajectory.h"
 #include "tests/robustness/app/small_scene.h"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
+#include <gtest/gtest.h>
 #include <vector>
 
 namespace boba::test {
@@ -23,7 +22,8 @@ inline void expect_same_pictures(const std::filesystem::path& a, const std::file
   }
   for (const std::filesystem::path& file : files) {
     ASSERT_EQ(std::filesystem::exists(a / file), std::filesystem::exists(b / file)) << file;
-    EXPECT_TRUE(!std::filesystem::exists(a / file) || content_of(a / file) == content_of(b / file)) << file << " differ";
+    EXPECT_TRUE(!std::filesystem::exists(a / file) || content_of(a / file) == content_of(b / file))
+        << file << " differ";
   }
 }
 

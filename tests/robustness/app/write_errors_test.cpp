@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A write that fails, at one call after the other: the program says which file, ends with 1, and what it leaves can be
-// gone on from, to the same end bit for bit. BOBA_FAULTS=all tries every call, one after the other (minutes); by default some of
-// them and the last.
+// gone on from, to the same end bit for bit. BOBA_FAULTS=all tries every call, one after the other (minutes); by
+// default some of them and the last.
 #include "tests/robustness/app/same_run.h"
 
 #include <algorithm>
@@ -69,7 +69,8 @@ TEST(WriteErrors, AtEveryCallAreToldAndLoseNothing) {
   constexpr long closing = 8; // the last ones, when files are closed, are all tried: each is a case of its own
   for (long at = 1; at <= n_calls; at += at < n_calls - closing ? std::min(step, n_calls - closing - at) : 1) {
     const bool later_too = at / step % 2 == 0;
-    SCOPED_TRACE("call " + std::to_string(at) + " of " + std::to_string(n_calls) + (later_too ? " and all later ones" : ""));
+    SCOPED_TRACE("call " + std::to_string(at) + " of " + std::to_string(n_calls) +
+                 (later_too ? " and all later ones" : ""));
     ProgramResult result;
     {
       const Faults faults(at, later_too, count);

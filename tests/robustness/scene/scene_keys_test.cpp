@@ -85,7 +85,8 @@ TEST(SceneKeys, EveryWrongValueIsRefusedWithKeyLineAndRange) {
         const std::string where = section.path + " " + section.kind + ": " + line + "\n" + refusal;
         ASSERT_NE(refusal, "") << "was accepted: " << where;
         EXPECT_NE(refusal.find(key.name), std::string::npos) << where;
-        EXPECT_NE(refusal.find(fmt::format("scene.toml:{}", TrialScene::line_number(text, line))), std::string::npos) << where;
+        EXPECT_NE(refusal.find(fmt::format("scene.toml:{}", TrialScene::line_number(text, line))), std::string::npos)
+            << where;
         EXPECT_NE(refusal.find(key.allowed()), std::string::npos) << where << "\nshould say: " << key.allowed();
         EXPECT_EQ(refusal.find('\n'), std::string::npos) << where;
         ++n_tried;
@@ -102,7 +103,8 @@ TEST(SceneKeys, EveryMissingKeyThatIsNeededIsNamed) {
     for (const SceneKey& key : section.keys) {
       if (key.required) {
         const std::string refusal = message(TrialScene(section, key.name).text(""));
-        EXPECT_NE(refusal.find(key.name), std::string::npos) << section.path << " " << section.kind << "." << key.name << ": " << refusal;
+        EXPECT_NE(refusal.find(key.name), std::string::npos)
+            << section.path << " " << section.kind << "." << key.name << ": " << refusal;
         EXPECT_NE(refusal.find("scene.toml"), std::string::npos) << refusal;
         ++n_tried;
       }

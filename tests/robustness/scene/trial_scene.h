@@ -35,7 +35,8 @@ public:
 
   /// Number of the line that is tried.
   static int line_number(const std::string& text, const std::string& line) {
-    return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(line)), '\n'));
+    return 1 + static_cast<int>(
+                   std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(line)), '\n'));
   }
 
 private:

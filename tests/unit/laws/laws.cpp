@@ -3,9 +3,8 @@
 #include "bpm/laws/contact.h"
 #include "bpm/laws/wall.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 
 namespace boba {
 namespace {
@@ -53,7 +52,9 @@ TEST(BondLaw, ScalesWithUnits) {
   EXPECT_NEAR(bond_force(1.0, 4.0, 1.0, 2.6, 2.2, 1.0 / 2.2, 1.05, 0.4), 2.0 * f, 1e-14); // alpha is in k d
 }
 
-double contact(double r, double vn, double gamma = 1.0) { return contact_force(1.0, 50.0, gamma, 1.0, r, vn); }
+double contact(double r, double vn, double gamma = 1.0) {
+  return contact_force(1.0, 50.0, gamma, 1.0, r, vn);
+}
 
 TEST(ContactLaw, IsContinuousAtTouch) {
   EXPECT_EQ(contact(1.0, 3.0), 0.0);

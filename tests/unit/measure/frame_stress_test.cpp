@@ -3,9 +3,8 @@
 #include "bpm/app/measure/frame_stress.h"
 #include "tests/support/lammps_fixture.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 
 namespace boba::test {
 namespace {
@@ -54,7 +53,8 @@ TEST_P(FrameStressOfLammps, AgreesToRounding) {
     EXPECT_NEAR(found[k], expected[k], tolerance) << "component " << k;
   }
   snapshot.velocity.clear();
-  EXPECT_GT(std::abs(pressure(stress, snapshot)[0] - expected[0]), 1e-3 * largest); // damping and kinetic parts are gone
+  EXPECT_GT(std::abs(pressure(stress, snapshot)[0] - expected[0]),
+            1e-3 * largest); // damping and kinetic parts are gone
 }
 
 INSTANTIATE_TEST_SUITE_P(Fixtures, FrameStressOfLammps,

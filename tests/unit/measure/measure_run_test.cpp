@@ -5,12 +5,11 @@
 #include "tests/unit/measure/crystals.h"
 #include "tests/unit/measure/shapes.h"
 
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
 #include <cmath>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -151,7 +150,8 @@ TEST(MeasureRun, SpaceFillingCrystalHasItsKnownNumbers) {
 
   const auto scattering = read_table(folder / "scattering.csv");
   ASSERT_GE(scattering.at("q_1/d").size(), 8u);
-  // Equal grains on fcc (cube edge 6 sqrt(2)): no vector below the first Bragg peak at 2 pi sqrt(3) / edge = 1.28 scatters.
+  // Equal grains on fcc (cube edge 6 sqrt(2)): no vector below the first Bragg peak at 2 pi sqrt(3) / edge = 1.28
+  // scatters.
   EXPECT_NEAR(scattering.at("intensity")[0], 0.0, 1e-10);
   EXPECT_GT(scattering.at("form_factor")[0], 1.0);
   EXPECT_TRUE(fs::exists(folder / "averages.json"));

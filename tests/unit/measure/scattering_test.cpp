@@ -77,8 +77,8 @@ TEST(Scattering, BothWaysGiveTheSumsByDefinition) {
       }
       const double intensity = direct_intensity(packing.positions, q);
       const std::int64_t v = row.first + n3 - row.low;
-      worst_sum = std::max({worst_sum, std::abs(summed.form_factor[v] - form_factor),
-                            std::abs(summed.intensity[v] - intensity)});
+      worst_sum = std::max(
+          {worst_sum, std::abs(summed.form_factor[v] - form_factor), std::abs(summed.intensity[v] - intensity)});
       worst_transform = std::max({worst_transform, std::abs(transformed.form_factor[v] - form_factor),
                                   std::abs(transformed.intensity[v] - intensity)});
     }
