@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/engine/dense_packing.h"
 
-#include "bpm/dynamics/stage_driver.h"
 #include "bpm/dynamics/stepper.h"
 #include "bpm/grain/template_cache.h"
 #include "bpm/io/checkpoint.h"
 #include "bpm/io/input_error.h"
 #include "bpm/packing/insertion.h"
+#include "bpm/stages/compress.h"
 
 #include <fmt/format.h>
 #include <optional>
@@ -43,13 +43,13 @@ Packing loose_packing(int n_grains, int n_nodes, double alpha) {
 
 Snapshot compressed_and_sheared(const Packing& loose, double pressure) {
   Stepper stepper(loose, Material{}, SimulationOptions{.threads = 2});
-  const auto driver = make_stage_driver(CompressStage{
-      .barostat = {.pressure = pressure}, .rate = 2e-3, .pressure_tolerance = 0.01, .kinetic_tolerance = 1e-2});
+  CompressDriver driver(
+      {.barostat = {.pressure = pressure}, .rate = 2e-3, .pressure_tolerance = 0.01, .kinetic_tolerance = 1e-2});
   stepper.start();
-  driver->begin(stepper);
-  while (!driver->finished()) {
+  driver.begin(stepper);
+  while (!driver.finished()) {
     stepper.advance(Virial::trace);
-    stepper.move_cell(driver->update(stepper));
+    stepper.move_cell(driver.update(stepper));
   }
   while (stepper.strain() < 0.1) {
     stepper.advance(Virial::trace);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/stability/cases.h"
 
-#include "bpm/dynamics/stage_driver.h"
 #include "bpm/grain/random.h"
 #include "bpm/grain/template_cache.h"
 #include "bpm/packing/insertion.h"
+#include "bpm/stages/compress.h"
 
 #include <array>
 #include <cmath>
@@ -80,16 +80,16 @@ Packing compressed(const PackingSpec& spec) {
   insertion.packing_fraction = 0.28;
   const Packing loose = insert_at_random(insertion);
   Stepper stepper(loose, Material{}, SimulationOptions{.dt = 0.05});
-  const auto driver = make_stage_driver(CompressStage{.barostat = {.pressure = pressure_of(spec.pressure, spec.alpha)},
-                                                      .rate = 1e-3,
-                                                      .pressure_tolerance = spec.tolerance,
-                                                      .kinetic_tolerance = spec.tolerance,
-                                                      .max_time = 3e4});
+  CompressDriver driver({.barostat = {.pressure = pressure_of(spec.pressure, spec.alpha)},
+                         .rate = 1e-3,
+                         .pressure_tolerance = spec.tolerance,
+                         .kinetic_tolerance = spec.tolerance,
+                         .max_time = 3e4});
   stepper.start();
-  driver->begin(stepper);
-  while (!driver->finished()) {
-    stepper.advance(driver->may_end(stepper) ? Virial::full : Virial::trace);
-    stepper.move_cell(driver->update(stepper));
+  driver.begin(stepper);
+  while (!driver.finished()) {
+    stepper.advance(driver.may_end(stepper) ? Virial::full : Virial::trace);
+    stepper.move_cell(driver.update(stepper));
   }
   return packing_of(loose, stepper.snapshot({}));
 }

@@ -5,6 +5,7 @@
 #include "bench/stability/ledger.h"
 #include "bpm/dynamics/simulation.h"
 #include "bpm/measure/blocking.h"
+#include "bpm/stages/shear.h"
 
 #include <algorithm>
 #include <array>
@@ -121,7 +122,7 @@ private:
 void run(const Packing& packing, const Material& material, Precision precision, Observer& observer) {
   Simulation simulation(packing, material, {.dt = 0.1, .precision = precision});
   Observer* observers[] = {&observer};
-  simulation.run(0, ShearStage{.rate = rate, .strain = strain}, observers);
+  simulation.run(0, ShearDriver({.rate = rate, .strain = strain}), observers);
 }
 
 } // namespace

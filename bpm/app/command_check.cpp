@@ -68,7 +68,7 @@ void print_stages(const Scene& scene, const std::vector<SceneStage>& stages, con
   for (std::size_t i = 0; i < stages.size(); ++i) {
     const double steps = estimates.steps[i];
     total += steps;
-    fmt::print("stage.{} {}: {}{:.0f} steps, {:g} tau{}\n", stages[i].index, stage_name(stages[i].stage),
+    fmt::print("stage.{} {}: {}{:.0f} steps, {:g} tau{}\n", stages[i].index, make_stage_driver(stages[i].stage)->name(),
                estimates.exact[i] ? "" : "about ", steps, steps * scene.options.dt,
                node_steps_per_second > 0.0
                    ? ", " + readable_duration(steps * static_cast<double>(nodes) / node_steps_per_second)

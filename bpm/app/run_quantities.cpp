@@ -33,9 +33,4 @@ double PackingNumbers::inertial_number(double rate, double pressure) const {
                         : std::numeric_limits<double>::quiet_NaN();
 }
 
-double shear_rate(const Stage& stage) {
-  const auto* shear = std::get_if<ShearStage>(&stage);
-  return shear == nullptr ? 0.0 : shear->rate;
-}
-
 } // namespace boba

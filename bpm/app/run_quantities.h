@@ -2,7 +2,6 @@
 #pragma once
 
 #include "bpm/dynamics/simulation.h"
-#include "bpm/dynamics/stage.h"
 
 #include <optional>
 
@@ -25,8 +24,5 @@ struct PackingNumbers {
   /// rate D sqrt(rho / P); 0 without shear.
   double inertial_number(double rate, double pressure) const;
 };
-
-/// Shear rate of a stage, 0 when it does not shear (1/tau).
-double shear_rate(const Stage& stage);
 
 } // namespace boba

@@ -130,16 +130,15 @@ private:
       if (stage.index < simulation_.stage_index()) {
         continue; // done before the checkpoint
       }
-      writers_.table->set_shear_rate(shear_rate(stage.stage));
       summary_.begin(simulation_);
-      const RunOutcome outcome =
-          simulation_.run(stage.index, stage.stage, observers, [this] { return stop_.pending(); });
+      const std::unique_ptr<StageDriver> driver = make_stage_driver(stage.stage);
+      const RunOutcome outcome = simulation_.run(stage.index, *driver, observers, [this] { return stop_.pending(); });
       progress_.finish();
       if (outcome == RunOutcome::stopped) {
         return stop();
       }
       write_checkpoint();
-      log_.say(summary_.text(simulation_, fmt::format("stage.{} {}", stage.index, stage_name(stage.stage))));
+      log_.say(summary_.text(simulation_, fmt::format("stage.{} {}", stage.index, driver->name())));
     }
     return finish();
   }

@@ -2,6 +2,7 @@
 #include "bpm/app/scene_estimate.h"
 
 #include "bpm/dynamics/simulation.h"
+#include "bpm/stages/hold.h"
 
 #include <algorithm>
 #include <chrono>
@@ -72,7 +73,7 @@ Measurement measure_speed(const Packing& packing, const Scene& scene) {
   for (int n = 4; seconds < wanted; n *= 2) {
     const std::int64_t first = simulation.step();
     const Clock::time_point begin = Clock::now();
-    simulation.run(0, HoldStage{n * scene.options.dt, std::nullopt}, {});
+    simulation.run(0, HoldDriver({n * scene.options.dt, std::nullopt}), {});
     seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     steps = simulation.step() - first;
   }

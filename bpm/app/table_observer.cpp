@@ -60,26 +60,27 @@ void TableObserver::observe(const Simulation& simulation, const StageProgress& p
   const Box& box = simulation.box();
   const auto [lower, upper] = simulation.end_forces();
   const auto known = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
-  const std::array<std::optional<double>, 20> values = {simulation.time(),
-                                                        static_cast<double>(progress.stage),
-                                                        simulation.strain(),
-                                                        numbers_.phi_reference(box),
-                                                        totals.pressure,
-                                                        known(numbers_.normalised(totals.pressure)),
-                                                        totals.mu(),
-                                                        known(numbers_.inertial_number(rate_, totals.pressure)),
-                                                        totals.kinetic_energy,
-                                                        totals.elastic_energy,
-                                                        totals.largest_overlap,
-                                                        box.lengths()[0],
-                                                        box.lengths()[1],
-                                                        box.lengths()[2],
-                                                        box.xy(),
-                                                        box.xz(),
-                                                        box.yz(),
-                                                        simulation.end_gap(),
-                                                        0.5 * (lower + upper),
-                                                        steps_per_second(simulation.step())};
+  const std::array<std::optional<double>, 20> values = {
+      simulation.time(),
+      static_cast<double>(progress.stage),
+      simulation.strain(),
+      numbers_.phi_reference(box),
+      totals.pressure,
+      known(numbers_.normalised(totals.pressure)),
+      totals.mu(),
+      known(numbers_.inertial_number(progress.shear_rate, totals.pressure)),
+      totals.kinetic_energy,
+      totals.elastic_energy,
+      totals.largest_overlap,
+      box.lengths()[0],
+      box.lengths()[1],
+      box.lengths()[2],
+      box.xy(),
+      box.xz(),
+      box.yz(),
+      simulation.end_gap(),
+      0.5 * (lower + upper),
+      steps_per_second(simulation.step())};
   writer_->write(simulation.step(), values);
 }
 

@@ -25,7 +25,6 @@ public:
       : writer_(std::move(writer)), schedule_(schedule), numbers_(numbers), last_step_(last_step),
         speed_step_(last_step) {}
 
-  void set_shear_rate(double rate) { rate_ = rate; } ///< of the stage that runs, 1/tau
   bool wants(const StepForecast& forecast) override;
   void observe(const Simulation& simulation, const StageProgress& progress) override;
   std::int64_t last_step() const { return last_step_; }
@@ -38,7 +37,6 @@ private:
   Schedule schedule_;
   PackingNumbers numbers_;
   std::int64_t last_step_, speed_step_;
-  double rate_ = 0.0;
   Clock::time_point last_time_ = Clock::now();
 };
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/dynamics/stage.h"
-
 #include <cstdint>
-#include <optional>
 #include <string>
 
 namespace boba {
@@ -13,13 +10,14 @@ class Simulation;
 
 /// Where a stage stands: what a progress bar draws.
 struct StageProgress {
-  int stage = 0;       ///< index among the scene's stages
-  std::string name;    ///< "compress", ...
-  std::string phase;   ///< "ramp", "settle" or ""
-  double done = 0.0;   ///< share of the stage, 0 .. 1, as far as it can be known
-  std::string driven;  ///< name of the quantity the stage drives: "P", "strain", "time"
-  double value = 0.0;  ///< its present value
-  double target = 0.0; ///< its target
+  int stage = 0;           ///< index among the scene's stages
+  std::string name;        ///< "compress", ...
+  std::string phase;       ///< "ramp", "settle" or ""
+  double done = 0.0;       ///< share of the stage, 0 .. 1, as far as it can be known
+  std::string driven;      ///< name of the quantity the stage drives: "P", "strain", "time"
+  double value = 0.0;      ///< its present value
+  double target = 0.0;     ///< its target
+  double shear_rate = 0.0; ///< of the cell, 1/tau
 };
 
 /// What a step will be when it is done: known before the step, so that an observer can ask for what it needs.

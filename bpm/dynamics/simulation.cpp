@@ -44,22 +44,23 @@ struct Simulation::Impl {
   Stepper stepper;
   Totals totals;
   int stage_index = 0;
-  std::unique_ptr<StageDriver> driver;        ///< of the stage that is under way
-  std::unique_ptr<SavedState> saved_in_stage; ///< a restored stage waits here for `run` to name it
-  double last_balance = 0.0;                  ///< s
+  StageDriver* driver = nullptr;             ///< of the stage that `run` is in
+  std::unique_ptr<SavedState> stopped_stage; ///< a stage that was stopped, here or in a restored run, for `run`
+  double last_balance = 0.0;                 ///< s
 
-  StageProgress progress(const Stage& stage) const {
+  StageProgress progress() const {
     StageProgress progress = driver->progress(stepper);
     progress.stage = stage_index;
-    progress.name = stage_name(stage);
+    progress.name = driver->name();
+    progress.shear_rate = driver->shear_rate();
     return progress;
   }
 
   /// The observers that want the step to come.
-  std::vector<Observer*> interested(std::span<Observer* const> observers, double rate) const {
+  std::vector<Observer*> interested(std::span<Observer* const> observers) const {
     const StepForecast forecast = {stepper.step() + 1, static_cast<double>(stepper.step() + 1) * stepper.options().dt,
-                                   stepper.strain() + rate * stepper.options().dt, driver->steps_left(stepper) == 1,
-                                   stepper.agreement().seconds()};
+                                   stepper.strain() + driver->shear_rate() * stepper.options().dt,
+                                   driver->steps_left(stepper) == 1, stepper.agreement().seconds()};
     std::vector<Observer*> wanting;
     for (Observer* observer : observers) {
       if (observer->wants(forecast)) {
@@ -69,9 +70,8 @@ struct Simulation::Impl {
     return wanting;
   }
 
-  void take_step(const Stage& stage, std::span<Observer* const> observers, Simulation& self) {
-    const auto* shear = std::get_if<ShearStage>(&stage);
-    const std::vector<Observer*> wanting = interested(observers, shear != nullptr ? shear->rate : 0.0);
+  void take_step(std::span<Observer* const> observers, Simulation& self) {
+    const std::vector<Observer*> wanting = interested(observers);
     const bool full = !wanting.empty() || driver->may_end(stepper);
     const bool look = (stepper.step() + 1) % alternation_interval == 0;
     const Virial virial = full ? Virial::full : driver->needs_pressure() || look ? Virial::trace : Virial::none;
@@ -84,14 +84,14 @@ struct Simulation::Impl {
     if (full) {
       totals = stepper.totals();
     }
-    show(wanting, stage, self);
+    show(wanting, self);
     balance();
   }
 
   /// What goes wrong while one rank writes must be known to all.
-  void show(std::span<Observer* const> observers, const Stage& stage, Simulation& self) const {
+  void show(std::span<Observer* const> observers, Simulation& self) const {
     for (Observer* observer : observers) {
-      stepper.ranks().together([&] { observer->observe(self, progress(stage)); });
+      stepper.ranks().together([&] { observer->observe(self, progress()); });
     }
   }
 
@@ -112,11 +112,10 @@ struct Simulation::Impl {
     }
   }
 
-  void begin_stage(const Stage& stage, std::span<Observer* const> observers, Simulation& self) {
-    driver = make_stage_driver(stage);
-    if (saved_in_stage) {
-      driver->restore(*saved_in_stage, stepper);
-      saved_in_stage.reset();
+  void begin_stage(std::span<Observer* const> observers, Simulation& self) {
+    if (stopped_stage) {
+      driver->restore(*stopped_stage);
+      stopped_stage.reset();
       return;
     }
     if (!stepper.started()) {
@@ -124,7 +123,24 @@ struct Simulation::Impl {
       totals = stepper.totals();
     }
     driver->begin(stepper);
-    show(observers, stage, self);
+    show(observers, self);
+  }
+
+  RunOutcome run_stage(std::span<Observer* const> observers, const StopRequest& stop, Simulation& self) {
+    begin_stage(observers, self);
+    while (!driver->finished()) {
+      stepper.agreement().wish_to_stop(stop && stop());
+      if (stepper.agreement().stop()) {
+        stopped_stage = std::make_unique<SavedState>();
+        driver->save(*stopped_stage);
+        return RunOutcome::stopped;
+      }
+      take_step(observers, self);
+    }
+    show(observers, self);
+    driver->end(stepper);
+    ++stage_index;
+    return RunOutcome::finished;
   }
 };
 
@@ -136,22 +152,13 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
-RunOutcome Simulation::run(int stage_index, const Stage& stage, std::span<Observer* const> observers,
+RunOutcome Simulation::run(int stage_index, StageDriver& driver, std::span<Observer* const> observers,
                            const StopRequest& stop) {
   impl_->stage_index = stage_index;
-  impl_->begin_stage(stage, observers, *this);
-  while (!impl_->driver->finished()) {
-    impl_->stepper.agreement().wish_to_stop(stop && stop());
-    if (impl_->stepper.agreement().stop()) {
-      return RunOutcome::stopped;
-    }
-    impl_->take_step(stage, observers, *this);
-  }
-  impl_->show(observers, stage, *this);
-  impl_->driver->end(impl_->stepper);
-  impl_->driver.reset();
-  ++impl_->stage_index;
-  return RunOutcome::finished;
+  impl_->driver = &driver;
+  const std::unique_ptr<StageDriver*, void (*)(StageDriver**)> in_use(&impl_->driver,
+                                                                      [](StageDriver** used) { *used = nullptr; });
+  return impl_->run_stage(observers, stop, *this);
 }
 
 void Simulation::evaluate() {
@@ -209,12 +216,15 @@ std::span<const int> Simulation::own_grains() const {
 SavedState Simulation::save() const {
   SavedState saved;
   impl_->stepper.save(saved);
-  saved.integer["stage"] = {impl_->stage_index, impl_->driver ? 1 : 0};
+  saved.integer["stage"] = {impl_->stage_index, impl_->driver != nullptr || impl_->stopped_stage ? 1 : 0};
   const Totals& totals = impl_->totals;
   saved.real["totals"] = {totals.pressure, totals.kinetic_energy, totals.elastic_energy, totals.largest_overlap};
   saved.real["totals_stress"] = {totals.stress.begin(), totals.stress.end()};
-  if (impl_->driver) {
+  if (impl_->driver != nullptr) {
     impl_->driver->save(saved);
+  } else if (impl_->stopped_stage) {
+    saved.real.insert(impl_->stopped_stage->real.begin(), impl_->stopped_stage->real.end());
+    saved.integer.insert(impl_->stopped_stage->integer.begin(), impl_->stopped_stage->integer.end());
   }
   return saved;
 }
@@ -245,13 +255,12 @@ void Simulation::restore(const SavedState& of_root) {
     impl_->totals.elastic_energy = totals.at(2);
     impl_->totals.largest_overlap = totals.at(3);
     std::copy_n(state.real.at("totals_stress").begin(), 6, impl_->totals.stress.begin());
-    impl_->driver.reset();
-    impl_->saved_in_stage.reset();
+    impl_->stopped_stage.reset();
     if (state.integer.at("stage").at(1) != 0) {
-      impl_->saved_in_stage = std::make_unique<SavedState>(state);
+      impl_->stopped_stage = std::make_unique<SavedState>(state);
       for (const std::string& name : entries_of_nodes) {
-        impl_->saved_in_stage->real.erase(name);
-        impl_->saved_in_stage->integer.erase(name);
+        impl_->stopped_stage->real.erase(name);
+        impl_->stopped_stage->integer.erase(name);
       }
     }
   } catch (const std::out_of_range&) {

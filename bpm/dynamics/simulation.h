@@ -2,7 +2,6 @@
 #pragma once
 
 #include "bpm/dynamics/observer.h"
-#include "bpm/dynamics/stage.h"
 #include "bpm/laws/material.h"
 #include "bpm/packing/lane_layout.h"
 #include "bpm/packing/packing.h"
@@ -19,6 +18,8 @@
 #include <vector>
 
 namespace boba {
+
+class StageDriver;
 
 struct SimulationOptions {
   double dt = 0.1; ///< tau
@@ -76,10 +77,17 @@ public:
 
   /// Called between steps; return true to stop (a signal, a wall-time limit).
   using StopRequest = std::function<bool()>;
-  /// Runs one stage to its end, from its beginning or, after `restore`, from where it was.
-  /// \throws BlowUp, std::runtime_error when the stage cannot reach its goal.
-  RunOutcome run(int stage_index, const Stage& stage, std::span<Observer* const> observers,
+  /// Runs one stage to its end: from its beginning or, when this stage was stopped (here, or in the run that `restore`
+  /// took over), from where it was. The driver is used during the call alone.
+  /// \throws BlowUp, std::runtime_error when the stage cannot reach its goal, or when another kind of stage was
+  /// stopped.
+  RunOutcome run(int stage_index, StageDriver& driver, std::span<Observer* const> observers,
                  const StopRequest& stop = {});
+  /// The same for a driver that is made in the call: `simulation.run(0, HoldDriver({.time = 10.0}), {})`.
+  RunOutcome run(int stage_index, StageDriver&& driver, std::span<Observer* const> observers,
+                 const StopRequest& stop = {}) {
+    return run(stage_index, driver, observers, stop);
+  }
 
   /// Forces and stress at the present positions and velocities, without moving anything.
   void evaluate();

@@ -4,6 +4,7 @@
 #include "bpm/dynamics/agreement.h"
 #include "bpm/dynamics/barostat.h"
 #include "bpm/dynamics/clamp.h"
+#include "bpm/dynamics/remap.h"
 #include "bpm/dynamics/simulation.h"
 #include "bpm/forces/force_field.h"
 #include "bpm/packing/lane_state.h"

@@ -2,13 +2,17 @@
 #pragma once
 
 #include "bpm/dynamics/simulation.h"
-#include "bpm/dynamics/stage.h"
 #include "bpm/grain/template_spec.h"
 #include "bpm/laws/material.h"
 #include "bpm/measure/measure_plan.h"
+#include "bpm/stages/compress.h"
+#include "bpm/stages/hold.h"
+#include "bpm/stages/press.h"
+#include "bpm/stages/shear.h"
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -78,6 +82,10 @@ struct TrajectoryStart {
   int frame = -1;
   AlphaChoice material;
 };
+
+using Stage = std::variant<CompressStage, HoldStage, ShearStage, PressStage>;
+
+std::unique_ptr<StageDriver> make_stage_driver(const Stage& stage);
 
 struct SceneStage {
   int index = 0; ///< place in the scene's list, from 0

@@ -121,7 +121,19 @@ void check_length(const SceneTable& table, const SceneStage& stage, double dt) {
   }
 }
 
+template <class... Cases> struct Overloaded : Cases... { using Cases::operator()...; };
+template <class... Cases> Overloaded(Cases...) -> Overloaded<Cases...>;
+
 } // namespace
+
+std::unique_ptr<StageDriver> make_stage_driver(const Stage& stage) {
+  using Made = std::unique_ptr<StageDriver>;
+  return std::visit(Overloaded{[](const CompressStage& s) -> Made { return std::make_unique<CompressDriver>(s); },
+                               [](const HoldStage& s) -> Made { return std::make_unique<HoldDriver>(s); },
+                               [](const ShearStage& s) -> Made { return std::make_unique<ShearDriver>(s); },
+                               [](const PressStage& s) -> Made { return std::make_unique<PressDriver>(s); }},
+                    stage);
+}
 
 std::vector<SceneStage> read_stages(const SceneTables& tables, const Scene& scene) {
   std::vector<SceneStage> stages;

@@ -2,6 +2,8 @@
 #include "calibration/specimen/cylinder.h"
 
 #include "bpm/dynamics/simulation.h"
+#include "bpm/stages/hold.h"
+#include "bpm/stages/press.h"
 #include "calibration/specimen/nonlinear_network.h"
 
 #include <algorithm>
@@ -116,12 +118,12 @@ CylinderResult dynamic_cylinder(const GrainTemplate& cylinder, const CylinderTes
                    {std::make_shared<GrainTemplate>(cylinder)}, {Placement{.grain = {.alpha = test.alpha}}});
   Simulation simulation(std::move(packing), Material{}, SimulationOptions{});
   simulation.run(0,
-                 PressStage{.ends = PressStage::Ends::clamps,
-                            .velocity = velocity,
-                            .strain = test.strain,
-                            .clamp_thickness = test.clamp_thickness},
+                 PressDriver({.ends = PressStage::Ends::clamps,
+                              .velocity = velocity,
+                              .strain = test.strain,
+                              .clamp_thickness = test.clamp_thickness}),
                  {});
-  simulation.run(1, HoldStage{.time = settle, .barostat = {}}, {});
+  simulation.run(1, HoldDriver({.time = settle, .barostat = {}}), {});
   const auto ends = simulation.end_forces();
   return measure(cylinder, simulation.snapshot().position, slabs, bulk, 0.5 * (ends[0] + ends[1]));
 }

@@ -2,6 +2,9 @@
 #include "calibration/specimen/dynamic_box.h"
 
 #include "bpm/dynamics/simulation.h"
+#include "bpm/stages/compress.h"
+#include "bpm/stages/hold.h"
+#include "bpm/stages/shear.h"
 
 #include <memory>
 #include <stdexcept>
@@ -36,18 +39,18 @@ DynamicModuli dynamic_moduli(const GrainTemplate& box, double alpha, double pres
 
   Simulation compressed = at_rest(box, alpha);
   compressed.run(0,
-                 CompressStage{.barostat = {.pressure = pressure, .gain = {}, .rate_cap = 1e-3},
-                               .rate = 1e-5,
-                               .pressure_tolerance = 1e-3,
-                               .kinetic_tolerance = 1e-6,
-                               .max_time = 1e5},
+                 CompressDriver({.barostat = {.pressure = pressure, .gain = {}, .rate_cap = 1e-3},
+                                 .rate = 1e-5,
+                                 .pressure_tolerance = 1e-3,
+                                 .kinetic_tolerance = 1e-6,
+                                 .max_time = 1e5}),
                  {});
-  compressed.run(1, HoldStage{.time = settle, .barostat = {}}, observers);
+  compressed.run(1, HoldDriver({.time = settle, .barostat = {}}), observers);
   moduli.bulk = last.totals.pressure / (1.0 - compressed.box().volume() / box.period->prod());
 
   Simulation sheared = at_rest(box, alpha);
-  sheared.run(0, ShearStage{.rate = 1e-5, .strain = strain, .remap = Remap::positions, .barostat = {}}, {});
-  sheared.run(1, HoldStage{.time = settle, .barostat = {}}, observers);
+  sheared.run(0, ShearDriver({.rate = 1e-5, .strain = strain, .remap = Remap::positions, .barostat = {}}), {});
+  sheared.run(1, HoldDriver({.time = settle, .barostat = {}}), observers);
   moduli.shear = last.totals.stress[3] / sheared.strain();
   return moduli;
 }

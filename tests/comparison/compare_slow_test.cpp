@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/dynamics/simulation.h"
+#include "bpm/stages/hold.h"
+#include "bpm/stages/press.h"
 #include "calibration/network/elastic_constants.h"
 #include "calibration/network/linear_network.h"
 #include "calibration/network/network_stiffness.h"
@@ -113,8 +115,8 @@ TEST(Presses, TheEngineFindsTheStaticForce) {
   Packing packing = make_packing(Box(-half, 2.0 * half, Vector3::Zero(), {false, false, false}),
                                  {std::make_shared<GrainTemplate>(grain)}, {Placement{.grain = {.alpha = 2.0}}});
   Simulation simulation(std::move(packing), Material{}, SimulationOptions{});
-  simulation.run(0, PressStage{.ends = PressStage::Ends::walls, .velocity = 1e-3, .strain = 0.15}, {});
-  simulation.run(1, HoldStage{.time = 600.0, .barostat = {}}, {});
+  simulation.run(0, PressDriver({.ends = PressStage::Ends::walls, .velocity = 1e-3, .strain = 0.15}), {});
+  simulation.run(1, HoldDriver({.time = 600.0, .barostat = {}}), {});
   const auto ends = simulation.end_forces();
   const double force = 0.5 * (std::abs(ends[0]) + std::abs(ends[1])), gap = simulation.end_gap();
   const SurfaceRule rule{.radius = 6.0};

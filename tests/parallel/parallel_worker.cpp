@@ -6,12 +6,17 @@
 #include "bpm/measure/scattering.h"
 #include "bpm/parallel/dealt_items.h"
 #include "bpm/parallel/message_passing.h"
+#include "bpm/stages/compress.h"
+#include "bpm/stages/hold.h"
+#include "bpm/stages/press.h"
+#include "bpm/stages/shear.h"
 #include "tests/support/small_packings.h"
 
 #include <cmath>
 #include <cstdio>
 #include <fmt/format.h>
 #include <map>
+#include <memory>
 #include <random>
 #include <string>
 
@@ -86,7 +91,7 @@ private:
 struct Case {
   Packing packing;
   SimulationOptions options;
-  std::vector<Stage> stages;
+  std::vector<std::shared_ptr<StageDriver>> stages;
 };
 
 Case case_of(const std::string& name, const Ranks& ranks) {
@@ -98,8 +103,8 @@ Case case_of(const std::string& name, const Ranks& ranks) {
   } else if (name == "velocities") {
     shear.remap = Remap::velocities;
   } else if (name == "compress") {
-    c.stages = {CompressStage{
-        .barostat = {.pressure = 0.2}, .rate = 4e-3, .pressure_tolerance = 0.1, .kinetic_tolerance = 0.5}};
+    c.stages = {std::make_shared<CompressDriver>(CompressStage{
+        .barostat = {.pressure = 0.2}, .rate = 4e-3, .pressure_tolerance = 0.1, .kinetic_tolerance = 0.5})};
     return c;
   } else if (name == "walls" || name == "clamps") {
     const Box open({-20, -20, -20}, {40, 40, 40}, Vector3::Zero(), {false, false, false});
@@ -115,11 +120,11 @@ Case case_of(const std::string& name, const Ranks& ranks) {
       }
     }
     const bool walls = name == "walls";
-    c.stages = {PressStage{
-        .ends = walls ? PressStage::Ends::walls : PressStage::Ends::clamps, .velocity = 2e-2, .strain = 0.05}};
+    c.stages = {std::make_shared<PressDriver>(PressStage{
+        .ends = walls ? PressStage::Ends::walls : PressStage::Ends::clamps, .velocity = 2e-2, .strain = 0.05})};
     return c;
   }
-  c.stages = {shear};
+  c.stages = {std::make_shared<ShearDriver>(shear)};
   return c;
 }
 
@@ -130,7 +135,7 @@ void run_case(const std::string& name, const Ranks& ranks, Bits& bits) {
   Notes notes(bits);
   std::vector<Observer*> observers = {&notes};
   for (std::size_t stage = 0; stage < c.stages.size(); ++stage) {
-    simulation.run(static_cast<int>(stage), c.stages[stage], observers);
+    simulation.run(static_cast<int>(stage), *c.stages[stage], observers);
   }
   bits.add("step", static_cast<double>(simulation.step()));
   bits.add(simulation.snapshot(all_parts));
@@ -232,7 +237,7 @@ void run_blow_up(const Ranks& ranks) {
   Packing packing = twenty_grains();
   packing.velocity[packing.first_nodes()[13] + 5] = Vector3(60.0, 0, 0);
   Simulation simulation(std::move(packing), {}, {.ranks = &ranks});
-  simulation.run(0, HoldStage{.time = 10.0}, {});
+  simulation.run(0, HoldDriver({.time = 10.0}), {});
 }
 
 int work(int argc, char** argv, const Ranks& ranks) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a compression comes to rest at its pressure.
+#include "bpm/stages/compress.h"
+
 #include "bpm/dynamics/simulation.h"
 #include "tests/support/small_packings.h"
 
@@ -35,7 +37,7 @@ TEST(Compress, SoftPackingsSettleInTheBarostatsTime) {
   const double target = 0.05;
   SettlingWatcher watcher;
   std::vector<Observer*> observers = {&watcher};
-  const CompressStage stage = {.barostat = {.pressure = target}, .rate = 1e-3, .pressure_tolerance = 5e-3};
+  CompressDriver stage({.barostat = {.pressure = target}, .rate = 1e-3, .pressure_tolerance = 5e-3});
   ASSERT_EQ(simulation.run(0, stage, observers), RunOutcome::finished);
   const auto& moments = watcher.moments;
   const auto lowest = std::min_element(moments.begin(), moments.end(),

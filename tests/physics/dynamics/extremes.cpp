@@ -4,10 +4,15 @@
 #include "bpm/dynamics/stable_step.h"
 #include "bpm/dynamics/stepper.h"
 #include "bpm/measure/packing_fraction.h"
+#include "bpm/stages/compress.h"
+#include "bpm/stages/hold.h"
+#include "bpm/stages/press.h"
+#include "bpm/stages/shear.h"
 #include "tests/support/small_packings.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <memory>
 #include <optional>
 
 namespace boba::test {
@@ -20,13 +25,13 @@ struct Outcome {
 };
 
 /// Runs the stages; everything must stay finite, with bonds as long as grains can have, or be stopped by a message.
-Outcome run(Packing packing, const std::vector<Stage>& stages, double dt = 0.1) {
+Outcome run(Packing packing, const std::vector<std::shared_ptr<StageDriver>>& stages, double dt = 0.1) {
   const Topology topology = packing.topology(true);
   Simulation simulation(std::move(packing), {}, {.dt = dt, .threads = 1});
   Outcome outcome;
   try {
     for (std::size_t k = 0; k < stages.size(); ++k) {
-      simulation.run(static_cast<int>(k), stages[k], {});
+      simulation.run(static_cast<int>(k), *stages[k], {});
     }
   } catch (const BlowUp& error) {
     outcome.blow_up = error.what();
@@ -76,7 +81,7 @@ TEST(Extremes, CompressionUntilNoGapIsLeft) {
   for (const auto& [alpha, pressure] :
        {std::pair(-0.8, 0.345), std::pair(-0.8, 1.38), std::pair(2.0, 2.03), std::pair(12.0, 5.69)}) {
     const Packing packing = grains_in(14.0, alpha);
-    const Outcome outcome = run(packing, {compression(pressure)});
+    const Outcome outcome = run(packing, {std::make_shared<CompressDriver>(compression(pressure))});
     ASSERT_FALSE(outcome.blow_up) << alpha << ": " << *outcome.blow_up;
     EXPECT_NEAR(outcome.totals.pressure, pressure, 0.03 * pressure) << alpha;
     // Published for large grains: 0.99 at P~ = 0.5.
@@ -86,10 +91,11 @@ TEST(Extremes, CompressionUntilNoGapIsLeft) {
 
 TEST(Extremes, FastShearWithManyFlips) {
   for (const Remap remap : {Remap::positions, Remap::velocities}) {
-    const Outcome outcome = run(
-        grains_in(12.0, 2.0),
-        {compression(0.1),
-         ShearStage{.rate = 1e-2, .strain = 8.0, .remap = remap, .barostat = Barostat{.pressure = 0.1, .gain = 0.05}}});
+    const Outcome outcome =
+        run(grains_in(12.0, 2.0),
+            {std::make_shared<CompressDriver>(compression(0.1)),
+             std::make_shared<ShearDriver>(ShearStage{
+                 .rate = 1e-2, .strain = 8.0, .remap = remap, .barostat = Barostat{.pressure = 0.1, .gain = 0.05}})});
     ASSERT_FALSE(outcome.blow_up) << *outcome.blow_up;
     EXPECT_LE(std::abs(outcome.end.box.xy()), 0.5 * outcome.end.box.lengths()[0] * (1.0 + 1e-9));
     EXPECT_NEAR(outcome.end.strain, 8.0, 1e-9);
@@ -124,7 +130,8 @@ TEST(Extremes, FlipsEveryFewSteps) {
 /// nodes.
 TEST(Extremes, NextToTheLimitOfRigidity) {
   for (const double alpha : {-0.95, -1.0}) {
-    const Outcome outcome = run(grains_in(14.0, alpha), {compression(0.02), HoldStage{.time = 100.0}});
+    const Outcome outcome = run(grains_in(14.0, alpha), {std::make_shared<CompressDriver>(compression(0.02)),
+                                                         std::make_shared<HoldDriver>(HoldStage{.time = 100.0})});
     EXPECT_FALSE(outcome.blow_up) << alpha << ": " << *outcome.blow_up;
   }
 }
@@ -132,7 +139,7 @@ TEST(Extremes, NextToTheLimitOfRigidity) {
 TEST(Extremes, ThirtyPercentOverlapAtTheStart) {
   Packing packing = small_packing(
       {.box = Box({0, 0, 0}, {16, 16, 16}), .n_grains = 9, .jitter = 0.0, .speed = 0.0, .least_distance = 0.7 * 5.0});
-  const Outcome outcome = run(std::move(packing), {HoldStage{.time = 300.0}});
+  const Outcome outcome = run(std::move(packing), {std::make_shared<HoldDriver>(HoldStage{.time = 300.0})});
   if (!outcome.blow_up) {
     EXPECT_LT(outcome.totals.kinetic_energy, 1.0);
   }
@@ -153,7 +160,7 @@ TEST(Extremes, GrainsThroughEachOtherAtHighSpeed) {
       packing.velocity[i] = speed * towards;
       packing.velocity[n + i] = -speed * towards;
     }
-    const Outcome outcome = run(std::move(packing), {HoldStage{.time = 60.0}});
+    const Outcome outcome = run(std::move(packing), {std::make_shared<HoldDriver>(HoldStage{.time = 60.0})});
     EXPECT_TRUE(speed < 5.0 || outcome.blow_up) << "half a diameter a step must not pass in silence";
   }
 }
@@ -164,7 +171,7 @@ TEST(Extremes, WallsDrivenThroughAGrain) {
                                      .n_grains = 1,
                                      .jitter = 0.0,
                                      .speed = 0.0});
-    run(std::move(packing), {PressStage{.velocity = velocity, .strain = 0.85}});
+    run(std::move(packing), {std::make_shared<PressDriver>(PressStage{.velocity = velocity, .strain = 0.85})});
   }
 }
 
@@ -177,8 +184,9 @@ TEST(Extremes, OneAndTwoGrainsInABoxBarelyLarger) {
                                      .least_distance = 5.0});
     const Outcome outcome =
         run(std::move(packing),
-            {compression(0.1),
-             ShearStage{.rate = 2e-3, .strain = 3.0, .barostat = Barostat{.pressure = 0.1, .gain = 0.05}}});
+            {std::make_shared<CompressDriver>(compression(0.1)),
+             std::make_shared<ShearDriver>(
+                 ShearStage{.rate = 2e-3, .strain = 3.0, .barostat = Barostat{.pressure = 0.1, .gain = 0.05}})});
     ASSERT_FALSE(outcome.blow_up) << *outcome.blow_up;
     EXPECT_GT(outcome.totals.pressure, 0.0);
   }
@@ -191,10 +199,12 @@ TEST(Extremes, AStepBeyondTheLimitIsFoundSoon) {
     const Packing packing = small_packing(
         {.box = Box({0, 0, 0}, {40, 40, 40}), .n_grains = 1, .alpha = alpha, .jitter = 0.01, .speed = 0.01});
     const double limit = stable_step(*packing.templates[0], {}, alpha);
-    EXPECT_FALSE(run(packing, {HoldStage{.time = 3000.0 * limit}}, 0.98 * limit).blow_up) << alpha;
+    EXPECT_FALSE(run(packing, {std::make_shared<HoldDriver>(HoldStage{.time = 3000.0 * limit})}, 0.98 * limit).blow_up)
+        << alpha;
     for (const double factor : {1.05, 1.1, 1.3, 2.0}) {
       const double dt = factor * limit;
-      EXPECT_TRUE(run(packing, {HoldStage{.time = 100.0 * dt}}, dt).blow_up) << alpha << ": dt = " << dt;
+      EXPECT_TRUE(run(packing, {std::make_shared<HoldDriver>(HoldStage{.time = 100.0 * dt})}, dt).blow_up)
+          << alpha << ": dt = " << dt;
     }
   }
 }
@@ -202,14 +212,15 @@ TEST(Extremes, AStepBeyondTheLimitIsFoundSoon) {
 /// Deep contacts take less than bonds do. Such a run does not explode, it vibrates: that is found too.
 TEST(Extremes, AStepBeyondTheLimitOfDeepContactsIsFoundSoon) {
   Packing packing = grains_in(14.0, -0.8);
-  const Outcome pressed = run(packing, {compression(0.345)});
+  const Outcome pressed = run(packing, {std::make_shared<CompressDriver>(compression(0.345))});
   ASSERT_FALSE(pressed.blow_up);
   packing.box = pressed.end.box;
   packing.position = pressed.end.position;
   packing.velocity = pressed.end.velocity;
   const double of_bonds = stable_step(*packing.templates[0], {}, -0.8);
-  EXPECT_FALSE(run(packing, {HoldStage{.time = 300.0}}, 0.1).blow_up);
-  EXPECT_TRUE(run(packing, {HoldStage{.time = 100.0 * of_bonds}}, 0.99 * of_bonds).blow_up);
+  EXPECT_FALSE(run(packing, {std::make_shared<HoldDriver>(HoldStage{.time = 300.0})}, 0.1).blow_up);
+  EXPECT_TRUE(
+      run(packing, {std::make_shared<HoldDriver>(HoldStage{.time = 100.0 * of_bonds})}, 0.99 * of_bonds).blow_up);
 }
 
 } // namespace

@@ -2,6 +2,10 @@
 // Whole runs: flips, threads, restarts, stages, walls, blow-up.
 #include "bpm/dynamics/simulation.h"
 #include "bpm/dynamics/stepper.h"
+#include "bpm/stages/compress.h"
+#include "bpm/stages/hold.h"
+#include "bpm/stages/press.h"
+#include "bpm/stages/shear.h"
 #include "tests/physics/dynamics/nine_grains.h"
 
 #include <algorithm>
@@ -35,7 +39,7 @@ Snapshot sheared(int threads, std::int64_t watch = 1000000, Remap remap = Remap:
   Simulation simulation(nine_grains(), {}, {.threads = threads, .precision = precision});
   Watcher watcher(watch);
   std::vector<Observer*> observers = {&watcher};
-  simulation.run(0, shear_stage(remap), observers);
+  simulation.run(0, ShearDriver(shear_stage(remap)), observers);
   return simulation.snapshot(all_parts);
 }
 
@@ -112,12 +116,13 @@ TEST(Runs, ContinueBitForBitFromAnyStep) {
     const Snapshot whole = sheared(2, 1000000, remap, precision);
     for (const std::int64_t stop_at : {1, 2, 37, 150, 299}) {
       Simulation first(nine_grains(), {}, {.threads = 2, .precision = precision});
-      ASSERT_EQ(first.run(0, shear_stage(remap), {}, [&] { return first.step() == stop_at; }), RunOutcome::stopped);
+      ASSERT_EQ(first.run(0, ShearDriver(shear_stage(remap)), {}, [&] { return first.step() == stop_at; }),
+                RunOutcome::stopped);
       const SavedState saved = first.save();
       Simulation second(nine_grains(), {}, {.threads = 1, .precision = precision});
       second.restore(saved);
       EXPECT_EQ(second.stage_index(), 0);
-      second.run(0, shear_stage(remap), {});
+      second.run(0, ShearDriver(shear_stage(remap)), {});
       expect_same_bits(whole, second.snapshot(all_parts));
     }
   }
@@ -181,12 +186,12 @@ TEST(Runs, CompressSettlesAtItsPressure) {
   Simulation simulation(
       small_packing({.box = Box({0, 0, 0}, {13, 13, 13}), .n_grains = 9, .jitter = 0.0, .speed = 0.0}), {},
       {.threads = 2});
-  const CompressStage stage = {.barostat = {.pressure = 0.05}, .rate = 2e-3};
-  ASSERT_EQ(simulation.run(0, stage, {}), RunOutcome::finished);
-  simulation.run(1, HoldStage{.time = 0.1}, {});
+  CompressDriver driver({.barostat = {.pressure = 0.05}, .rate = 2e-3});
+  ASSERT_EQ(simulation.run(0, driver, {}), RunOutcome::finished);
+  simulation.run(1, HoldDriver({.time = 0.1}), {});
   Watcher watcher(1);
   std::vector<Observer*> observers = {&watcher};
-  simulation.run(2, HoldStage{.time = 0.1}, observers);
+  simulation.run(2, HoldDriver({.time = 0.1}), observers);
   EXPECT_NEAR(simulation.totals().pressure / 0.05, 1.0, 2e-3);
   EXPECT_LT(simulation.totals().kinetic_energy, 2e-4 * simulation.totals().elastic_energy);
 }
@@ -230,7 +235,7 @@ TEST(Runs, PressBetweenClampsStretchesAsAsked) {
   const Box open({-20, -20, -20}, {40, 40, 40}, {0, 0, 0}, {false, false, false});
   Simulation simulation(make_packing(open, {small_ball(4.0, 5)}, {Placement{}}), {}, {});
   const PressStage stage = {.ends = PressStage::Ends::clamps, .velocity = 0.01, .strain = 0.05, .clamp_thickness = 1.5};
-  simulation.run(0, stage, {});
+  simulation.run(0, PressDriver(stage), {});
   double low = 1e300, high = -1e300;
   for (const Vector3& x : simulation.packing().position) {
     low = std::min(low, x[2]);
@@ -253,7 +258,7 @@ TEST(Runs, BlowUpNamesNodeGrainStepAndCause) {
   packing.velocity[100] = {80.0, 0.0, 0.0};
   Simulation simulation(packing, {}, {});
   try {
-    simulation.run(0, HoldStage{.time = 10.0}, {});
+    simulation.run(0, HoldDriver({.time = 10.0}), {});
     FAIL() << "a node at 8 d a step was not noticed";
   } catch (const BlowUp& error) {
     const std::string message = error.what();
@@ -268,14 +273,14 @@ TEST(Runs, NotANumberIsNoticedAtOnce) {
   Packing packing = nine_grains();
   packing.position[5][1] = std::nan("");
   Simulation simulation(packing, {}, {});
-  EXPECT_THROW(simulation.run(0, HoldStage{.time = 10.0}, {}), BlowUp);
+  EXPECT_THROW(simulation.run(0, HoldDriver({.time = 10.0}), {}), BlowUp);
 }
 
 TEST(Runs, TooLargeATimeStepIsNoticedWithinAHundredSteps) {
   Simulation simulation(
       small_packing({.box = Box({0, 0, 0}, {14, 14, 14}), .n_grains = 9, .alpha = 12.0, .jitter = 1e-3}), {},
       {.dt = 0.6});
-  EXPECT_THROW(simulation.run(0, HoldStage{.time = 1000.0}, {}), BlowUp);
+  EXPECT_THROW(simulation.run(0, HoldDriver({.time = 1000.0}), {}), BlowUp);
   EXPECT_LE(simulation.step(), 100);
 }
 

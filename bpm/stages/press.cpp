@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/dynamics/press_driver.h"
-
-#include "bpm/dynamics/step_count.h"
+#include "bpm/stages/press.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -12,7 +10,7 @@ namespace boba {
 void PressDriver::begin(Stepper& stepper) {
   dt_ = stepper.options().dt;
   stage_.ends == PressStage::Ends::walls ? begin_walls(stepper) : begin_clamps(stepper);
-  n_steps_ = step_count(stage_.strain * height_ / (2.0 * std::abs(stage_.velocity)), dt_);
+  steps_.begin(stage_.strain * height_ / (2.0 * std::abs(stage_.velocity)), dt_);
 }
 
 void PressDriver::begin_walls(Stepper& stepper) {
@@ -40,11 +38,11 @@ void PressDriver::begin_clamps(Stepper& stepper) {
 }
 
 double PressDriver::moved() const {
-  return static_cast<double>(steps_done_) * dt_ * stage_.velocity;
+  return static_cast<double>(steps_.done()) * dt_ * stage_.velocity;
 }
 
 CellRates PressDriver::update(Stepper& stepper) {
-  ++steps_done_;
+  steps_.count();
   for (Wall& wall : stepper.forces().walls()) {
     wall.point += dt_ * wall.velocity;
   }
@@ -64,7 +62,7 @@ void PressDriver::end(Stepper& stepper) {
 
 StageProgress PressDriver::progress(const Stepper&) const {
   StageProgress progress;
-  progress.done = n_steps_ > 0 ? static_cast<double>(steps_done_) / static_cast<double>(n_steps_) : 1.0;
+  progress.done = steps_.share_done();
   progress.driven = "strain";
   progress.target = stage_.strain;
   progress.value = height_ > 0.0 ? 2.0 * std::abs(moved()) / height_ : 0.0;
@@ -73,14 +71,13 @@ StageProgress PressDriver::progress(const Stepper&) const {
 
 void PressDriver::save(SavedState& saved) const {
   saved.real["driver"] = {height_, dt_};
-  saved.integer["driver"] = {n_steps_, steps_done_};
+  steps_.save(saved);
 }
 
-void PressDriver::restore(const SavedState& saved, Stepper&) {
+void PressDriver::restore(const SavedState& saved) {
   height_ = saved.real.at("driver").at(0);
   dt_ = saved.real.at("driver").at(1);
-  n_steps_ = saved.integer.at("driver").at(0);
-  steps_done_ = saved.integer.at("driver").at(1);
+  steps_.restore(saved);
 }
 
 } // namespace boba

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/dynamics/compress_driver.h"
+#include "bpm/stages/compress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,14 +80,12 @@ void CompressDriver::save(SavedState& saved) const {
   saved.real["driver"] = {static_cast<double>(phase_), start_time_, gain_, halfway_.time, halfway_.pressure};
 }
 
-void CompressDriver::restore(const SavedState& saved, Stepper&) {
+void CompressDriver::restore(const SavedState& saved) {
   const std::vector<double>& numbers = saved.real.at("driver");
   phase_ = static_cast<Phase>(static_cast<int>(numbers.at(0)));
   start_time_ = numbers.at(1);
   gain_ = numbers.at(2);
-  if (numbers.size() > 3) { // checkpoints of earlier builds do not have it
-    halfway_ = {numbers.at(3), numbers.at(4)};
-  }
+  halfway_ = {numbers.at(3), numbers.at(4)};
 }
 
 } // namespace boba

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/stages/held_pressure.h"
+
+namespace boba {
+
+void HeldPressure::begin(Stepper& stepper, double shear_rate) {
+  if (barostat_) {
+    const double modulus = barostat_->gain ? 1.0 : stepper.affine_bulk_modulus(); // of no use to a gain that is given
+    gain_ = barostat_gain(*barostat_, {modulus, stepper.sound_crossing(modulus), shear_rate});
+  }
+}
+
+double HeldPressure::dilation_rate(const Stepper& stepper) const {
+  return barostat_ ? barostat_rate(*barostat_, gain_, stepper.pressure()) : 0.0;
+}
+
+} // namespace boba

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/dynamics/stage_driver.h"
+#include "bpm/stages/held_pressure.h"
+#include "bpm/stages/timed_steps.h"
+
+namespace boba {
+
+/// A fixed cell, or a constant pressure, for a time.
+struct HoldStage {
+  double time = 0.0; ///< tau
+  std::optional<Barostat> barostat;
+};
+
+class HoldDriver : public StageDriver {
+public:
+  explicit HoldDriver(const HoldStage& stage) : stage_(stage), pressure_(stage.barostat) {}
+
+  std::string name() const override { return "hold"; }
+  void begin(Stepper& stepper) override;
+  bool needs_pressure() const override { return pressure_.is_held(); }
+  CellRates update(Stepper& stepper) override;
+  bool finished() const override { return steps_.finished(); }
+  std::int64_t steps_left(const Stepper&) const override { return steps_.left(); }
+  bool may_end(const Stepper&) const override { return steps_.left() == 1; }
+  double shear_rate() const override { return 0.0; }
+  void end(Stepper&) override {}
+  StageProgress progress(const Stepper& stepper) const override;
+  void save(SavedState& saved) const override;
+  void restore(const SavedState& saved) override;
+
+private:
+  HoldStage stage_;
+  TimedSteps steps_;
+  HeldPressure pressure_;
+};
+
+} // namespace boba

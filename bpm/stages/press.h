@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/dynamics/stage_driver.h"
+#include "bpm/stages/timed_steps.h"
+
+namespace boba {
+
+/// Squeezes a specimen along z between two rigid walls or two clamped ends (which move towards each other with
+/// `velocity` each, symmetrically), until the nominal strain is reached.
+struct PressStage {
+  enum class Ends { walls, clamps };
+  Ends ends = Ends::walls;
+  double velocity = 1e-3; ///< of each end, d/tau; negative pulls (clamps)
+  double strain = 0.0;    ///< nominal strain: displacement of both ends together over the specimen's initial height
+  double clamp_thickness = 2.0; ///< d; nodes within this distance of the specimen's ends move rigidly
+};
+
+/// Squeezes (or, with clamps, pulls) a specimen along z between two walls or two clamped ends.
+class PressDriver : public StageDriver {
+public:
+  explicit PressDriver(const PressStage& stage) : stage_(stage) {}
+
+  std::string name() const override { return "press"; }
+  void begin(Stepper& stepper) override;
+  bool needs_pressure() const override { return false; }
+  CellRates update(Stepper& stepper) override;
+  bool finished() const override { return steps_.finished(); }
+  std::int64_t steps_left(const Stepper&) const override { return steps_.left(); }
+  bool may_end(const Stepper&) const override { return steps_.left() == 1; }
+  double shear_rate() const override { return 0.0; }
+  void end(Stepper& stepper) override;
+  StageProgress progress(const Stepper& stepper) const override;
+  void save(SavedState& saved) const override;
+  void restore(const SavedState& saved) override;
+
+private:
+  void begin_walls(Stepper& stepper);
+  void begin_clamps(Stepper& stepper);
+  double moved() const; ///< by each end so far, d
+
+  PressStage stage_;
+  double height_ = 0.0; ///< between the ends at the start, d
+  double dt_ = 0.0;
+  TimedSteps steps_;
+};
+
+} // namespace boba

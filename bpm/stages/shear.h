@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/dynamics/stage_driver.h"
+#include "bpm/stages/held_pressure.h"
+#include "bpm/stages/timed_steps.h"
+
+namespace boba {
+
+/// Simple shear in x with gradient y, at constant volume or at a held pressure.
+struct ShearStage {
+  double rate = 0.0;   ///< 1/tau; negative shears backwards
+  double strain = 0.0; ///< > 0, to be added by this stage
+  Remap remap = Remap::positions;
+  std::optional<Barostat> barostat;
+};
+
+class ShearDriver : public StageDriver {
+public:
+  explicit ShearDriver(const ShearStage& stage) : stage_(stage), pressure_(stage.barostat) {}
+
+  std::string name() const override { return "shear"; }
+  void begin(Stepper& stepper) override;
+  bool needs_pressure() const override { return pressure_.is_held(); }
+  CellRates update(Stepper& stepper) override;
+  bool finished() const override { return steps_.finished(); }
+  std::int64_t steps_left(const Stepper&) const override { return steps_.left(); }
+  bool may_end(const Stepper&) const override { return steps_.left() == 1; }
+  double shear_rate() const override { return stage_.rate; }
+  void end(Stepper& stepper) override;
+  StageProgress progress(const Stepper& stepper) const override;
+  void save(SavedState& saved) const override;
+  void restore(const SavedState& saved) override;
+
+private:
+  ShearStage stage_;
+  TimedSteps steps_;
+  HeldPressure pressure_;
+};
+
+} // namespace boba

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/dynamics/simulation.h"
+#include "bpm/dynamics/step_count.h"
+
+#include <cstdint>
+
+namespace boba {
+
+/// The steps of a stage that lasts a known time.
+class TimedSteps {
+public:
+  /// \param duration, \param dt in tau  \throws std::invalid_argument when there are more than `most_steps`.
+  void begin(double duration, double dt) { n_steps_ = step_count(duration, dt); }
+  void count() { ++steps_done_; }
+  std::int64_t done() const { return steps_done_; }
+  std::int64_t left() const { return n_steps_ - steps_done_; }
+  bool finished() const { return steps_done_ >= n_steps_; }
+  /// 0 .. 1; 1 when there are no steps.
+  double share_done() const {
+    return n_steps_ > 0 ? static_cast<double>(steps_done_) / static_cast<double>(n_steps_) : 1.0;
+  }
+
+  void save(SavedState& saved) const { saved.integer["driver"] = {n_steps_, steps_done_}; }
+  void restore(const SavedState& saved) {
+    n_steps_ = saved.integer.at("driver").at(0);
+    steps_done_ = saved.integer.at("driver").at(1);
+  }
+
+private:
+  std::int64_t n_steps_ = 0, steps_done_ = 0;
+};
+
+} // namespace boba
