@@ -5,6 +5,11 @@ add_library(boba_warnings INTERFACE)
 target_compile_options(boba_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
   -Wno-missing-field-initializers) # members left out of a designated initialiser have defaults
 
+# Sources of a folder are compiled a few at a time as one: most of a file's time is Eigen's and the standard library's headers
+# (docs/decisions/compile-time.md). Names in anonymous namespaces must therefore differ within a folder.
+option(BOBA_UNITY_BUILD "Compile the sources of a library in groups" ON)
+set(BOBA_UNITY_BATCH 8 CACHE STRING "Sources of such a group")
+
 # boba_add_library(NAME [SOURCES ...] [LIBRARIES ...]): target boba_NAME with the alias boba::NAME.
 # Without sources it is a header-only (interface) library.
 function(boba_add_library name)
@@ -13,6 +18,8 @@ function(boba_add_library name)
     add_library(boba_${name} STATIC ${ARG_SOURCES})
     target_include_directories(boba_${name} PUBLIC ${CMAKE_SOURCE_DIR})
     target_link_libraries(boba_${name} PUBLIC ${ARG_LIBRARIES} PRIVATE boba_warnings)
+    set_target_properties(boba_${name} PROPERTIES UNITY_BUILD ${BOBA_UNITY_BUILD}
+      UNITY_BUILD_BATCH_SIZE ${BOBA_UNITY_BATCH})
   else()
     add_library(boba_${name} INTERFACE)
     target_include_directories(boba_${name} INTERFACE ${CMAKE_SOURCE_DIR})
