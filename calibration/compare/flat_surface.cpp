@@ -13,10 +13,10 @@ namespace boba::calibration {
 
 namespace {
 
-constexpr double step = 0.15;           // d, of the gap between two relaxed states
-constexpr double bulk_step = 0.01;      // of the uncut box's stretch
-constexpr double smallest_share = 0.02; // of the largest pressure; below, single nodes carry the load
-constexpr double tolerance = 1e-6;      // k d, root mean square residual; pressures to 1e-5
+constexpr double step = 0.15;              // d, of the gap between two relaxed states
+constexpr double bulk_step = 0.01;         // of the uncut box's stretch
+constexpr double smallest_share = 0.02;    // of the largest pressure; below, single nodes carry the load
+constexpr double surface_tolerance = 1e-6; // k d, root mean square residual; pressures to 1e-5
 constexpr double softest_start =
     0.2; // c1 over p/g at the largest overlap: a layer without a slope at rest has no tangent
 
@@ -47,7 +47,7 @@ void add_bulk_stretch(const GrainTemplate& box, double alpha, std::vector<SlabSt
       before = pressure;
       stretch -= bulk_step;
       network.deform_cell(Vector3(1.0, 1.0, stretch).asDiagonal());
-      network.relax(tolerance);
+      network.relax(surface_tolerance);
       pressure = -network.stress()(2, 2);
     }
     state.bulk_stretch = stretch + bulk_step * (pressure - state.pressure) / (pressure - before);
@@ -78,7 +78,7 @@ std::vector<SlabState> press_slab(const GrainTemplate& box, double alpha, double
     }
     before = network.position();
     network.set_positions(std::move(ahead));
-    network.relax(tolerance);
+    network.relax(surface_tolerance);
     const auto load = network.wall_loads();
     states.push_back({0.5 * (load[0] + load[1]) / area, gap, 1.0, body});
     if (states.back().pressure < largest_pressure && gap < 0.5 * box.period->z()) {

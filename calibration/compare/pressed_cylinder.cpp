@@ -13,10 +13,10 @@ namespace boba::calibration {
 
 namespace {
 
-constexpr double largest_step = 0.02;   // of strain
-constexpr double tolerance = 1e-7;      // k d, root mean square residual of a state that is told
-constexpr double path_tolerance = 1e-4; // k d, of the states on the way to it
-constexpr int bins = 8;                 // of |z|
+constexpr double largest_strain_step = 0.02;   // of strain
+constexpr double state_tolerance = 1e-7;       // k d, root mean square residual of a state that is told
+constexpr double strain_path_tolerance = 1e-4; // k d, of the states on the way to it
+constexpr int bins = 8;                        // of |z|
 
 /// How far behind the face at height z0 the slab beyond it acts; `side` is -1 for the lower slab, +1 for the upper.
 double hold_depth(const GrainTemplate& cylinder, double z0, double side) {
@@ -128,7 +128,7 @@ std::vector<CylinderState> CylinderPress::squeeze(double alpha, CylinderEnds end
   double at = 0.0;
   for (const double goal : strains) {
     const double start = processor_seconds();
-    const int steps = std::max(1, static_cast<int>(std::ceil((goal - at) / largest_step - 1e-9)));
+    const int steps = std::max(1, static_cast<int>(std::ceil((goal - at) / largest_strain_step - 1e-9)));
     const double change = (goal - at) / steps;
     for (int s = 0; s < steps; ++s) {
       for (int n = 0; n < cylinder_.n_nodes(); ++n) {
@@ -138,7 +138,7 @@ std::vector<CylinderState> CylinderPress::squeeze(double alpha, CylinderEnds end
         }
         network.move(n, {0.0, 0.0, -change * z});
       }
-      network.relax(s + 1 < steps ? path_tolerance : tolerance);
+      network.relax(s + 1 < steps ? strain_path_tolerance : state_tolerance);
     }
     at = goal;
     CylinderState state = measure(network.position(), goal);

@@ -21,14 +21,6 @@ Eigen::Matrix<double, 6, 1> to_voigt(const Matrix3& stress) {
   return column;
 }
 
-Vector new_vector(int n) {
-  Vector v;
-  check(VecCreateSeq(PETSC_COMM_SELF, n, v.address()), "VecCreateSeq");
-  check(VecSetBlockSize(v, 3), "VecSetBlockSize");
-  check(VecSet(v, 0.0), "VecSet");
-  return v;
-}
-
 /// GMRES with the incomplete factors of the pair matrix, by measurement (bench/calibration): for 20000 nodes it needs
 /// 25 to 40 iterations a solve; BiCGStab takes 1.3 times and point-block Jacobi 1.4 times as long, and conjugate
 /// gradients, 1.15 times faster, have no right to converge on an operator that is not symmetric.

@@ -45,6 +45,9 @@ using Vector = PetscHandle<Vec, VecDestroy>;
 using Solver = PetscHandle<KSP, KSPDestroy>;
 using NullSpace = PetscHandle<MatNullSpace, MatNullSpaceDestroy>;
 
+/// A vector of n zeros in blocks of three, on this process. \throws std::runtime_error when PETSc cannot.
+Vector new_vector(int n);
+
 /// Starts PETSc and SLEPc (and MPI) for the life of the object; one per program. They read the environment
 /// (PETSC_OPTIONS) but no command line.
 class PetscSession {

@@ -20,13 +20,6 @@ namespace {
 
 using EigenSolver = PetscHandle<EPS, EPSDestroy>;
 
-Vector new_vector(int n) {
-  Vector v;
-  check(VecCreateSeq(PETSC_COMM_SELF, n, v.address()), "VecCreateSeq");
-  check(VecSetBlockSize(v, 3), "VecSetBlockSize");
-  return v;
-}
-
 /// Conjugate gradients on A0, which is symmetric.
 Solver a0_solver(const NetworkOperator& op, double tolerance, int max_iterations) {
   Solver solver;

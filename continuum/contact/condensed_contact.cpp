@@ -10,16 +10,6 @@ namespace {
 
 using Eigen::Index;
 
-std::vector<Index> members(const std::vector<bool>& active) {
-  std::vector<Index> result;
-  for (std::size_t i = 0; i < active.size(); ++i) {
-    if (active[i]) {
-      result.push_back(Index(i));
-    }
-  }
-  return result;
-}
-
 /// Largest |D g(p) + A p - o_0| over the active nodes.
 double residual(const CondensedContact& problem, const InterfaceLaw& interface, const std::vector<Index>& nodes,
                 const Eigen::VectorXd& p) {
@@ -72,6 +62,16 @@ std::vector<std::size_t> contradictions(const CondensedContact& problem, const s
 
 } // namespace
 
+std::vector<Index> active_nodes(const std::vector<bool>& active) {
+  std::vector<Index> result;
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    if (active[i]) {
+      result.push_back(static_cast<Index>(i));
+    }
+  }
+  return result;
+}
+
 ContactSolution solve(const CondensedContact& problem, const InterfaceLaw& interface, std::vector<bool> active,
                       int max_iterations) {
   std::set<std::vector<bool>> seen;
@@ -82,7 +82,7 @@ ContactSolution solve(const CondensedContact& problem, const InterfaceLaw& inter
     for (std::size_t i = 0; i < active.size(); ++i) {
       p[Index(i)] = active[i] ? std::max(p[Index(i)], 0.) : 0.;
     }
-    p = solve_equalities(problem, interface, members(active), p);
+    p = solve_equalities(problem, interface, active_nodes(active), p);
     wrong = contradictions(problem, active, p);
     if (wrong.empty()) {
       return {p, active, iteration};

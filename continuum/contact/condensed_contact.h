@@ -46,4 +46,7 @@ constexpr int most_active_sets = 200;
 ContactSolution solve(const CondensedContact& problem, const InterfaceLaw& interface, std::vector<bool> active,
                       int max_iterations = most_active_sets);
 
+/// Numbers of the nodes that are marked.
+std::vector<Eigen::Index> active_nodes(const std::vector<bool>& active);
+
 } // namespace boba::continuum

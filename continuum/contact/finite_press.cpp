@@ -23,19 +23,9 @@ PressState between(const PressState& from, const PressState& to, double share) {
   return state;
 }
 
-std::vector<Eigen::Index> members(const std::vector<bool>& active) {
-  std::vector<Eigen::Index> result;
-  for (std::size_t i = 0; i < active.size(); ++i) {
-    if (active[i]) {
-      result.push_back(Eigen::Index(i));
-    }
-  }
-  return result;
-}
-
 /// Nodal forces of unit pressures at the active vertices.
 SparseMatrix columns_of(const ContactSurface& surface, const std::vector<bool>& active) {
-  const auto held = members(active);
+  const auto held = active_nodes(active);
   SparseMatrix result(surface.loads().rows(), Eigen::Index(held.size()));
   for (std::size_t k = 0; k < held.size(); ++k) {
     result.col(Eigen::Index(k)) = surface.loads().col(held[k]);
@@ -95,7 +85,7 @@ PressState FinitePress::held_step(double plate, const SparseMatrix& stiffness, c
   PressState next = state;
   const Eigen::VectorXd overlap = surface_->overlap(plate, state.displacement);
   for (int round = 0; round < max_held_rounds; ++round) {
-    const std::vector<Eigen::Index> held = members(next.active);
+    const std::vector<Eigen::Index> held = active_nodes(next.active);
     const SparseMatrix pressed = columns_of(*surface_, next.active);
     // Springs on what is held anyway change nothing but the definiteness of the matrix.
     const Eigen::VectorXd springs =
