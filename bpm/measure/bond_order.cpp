@@ -70,7 +70,10 @@ double correlation(const Harmonics<6>& a, const Harmonics<6>& b) {
   return norm_a > 0.0 && norm_b > 0.0 ? product / std::sqrt(norm_a * norm_b) : 0.0;
 }
 
-CrystalClass classify(const BondOrder& order, const BondOrderOptions& options) {
+CrystalClass classify(const BondOrder& order, bool among_own_copies, const BondOrderOptions& options) {
+  if (among_own_copies) {
+    return CrystalClass::unknown;
+  }
   if (order.n_solid_bonds < options.min_solid_bonds) {
     return CrystalClass::disordered;
   }
@@ -83,7 +86,7 @@ CrystalClass classify(const BondOrder& order, const BondOrderOptions& options) {
 } // namespace
 
 std::string_view name_of(CrystalClass crystal) {
-  constexpr std::array<std::string_view, 4> names = {"disordered", "fcc", "hcp", "bcc"};
+  constexpr std::array<std::string_view, n_crystal_classes> names = {"disordered", "fcc", "hcp", "bcc", "unknown"};
   return names[static_cast<std::size_t>(crystal)];
 }
 
@@ -103,16 +106,21 @@ std::vector<BondOrder> bond_order(const NeighbourLists& neighbours, const BondOr
     order.averaged_w4 = third_invariant<4>(mean4);
     order.averaged_w6 = third_invariant<6>(mean6);
     order.n_neighbours = static_cast<int>(neighbours[grain].size());
+    bool among_own_copies = false;
     for (const Neighbour& neighbour : neighbours[grain]) {
-      order.n_solid_bonds += correlation(q6[grain], q6[neighbour.grain]) > options.solid_bond_cosine;
+      const bool own = neighbour.grain == static_cast<int>(grain);
+      const bool solid = !own && correlation(q6[grain], q6[neighbour.grain]) > options.solid_bond_cosine;
+      order.solid.push_back(solid);
+      order.n_solid_bonds += solid;
+      among_own_copies = among_own_copies || own;
     }
-    order.crystal = classify(order, options);
+    order.crystal = classify(order, among_own_copies, options);
   }
   return orders;
 }
 
-std::array<int, 4> count_classes(const std::vector<BondOrder>& orders) {
-  std::array<int, 4> counts{};
+std::array<int, n_crystal_classes> count_classes(const std::vector<BondOrder>& orders) {
+  std::array<int, n_crystal_classes> counts{};
   for (const BondOrder& order : orders) {
     ++counts[static_cast<std::size_t>(order.crystal)];
   }

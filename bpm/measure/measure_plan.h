@@ -6,6 +6,7 @@
 #include "bpm/measure/hull_facets.h"
 #include "bpm/measure/packing_fraction.h"
 #include "bpm/measure/scattering.h"
+#include "bpm/measure/template_matching.h"
 
 #include <set>
 #include <string>
@@ -26,6 +27,7 @@ struct MeasurePlan {
   bool facet_sensitivity = false; ///< facets also at other thresholds, into a table of their own
   measure::ScatteringOptions scattering;
   measure::BondOrderOptions order;
+  measure::TemplateOptions templates;
   NeighbourRule neighbours = NeighbourRule::solid_angle;
   Material material;
 

@@ -25,6 +25,10 @@ using NeighbourLists = std::vector<std::vector<Neighbour>>;
 /// Source: van Meel, Filion, Valeriani, Frenkel, J. Chem. Phys. 136, 234107 (2012).
 NeighbourLists solid_angle_neighbours(const Box& box, std::span<const Vector3> centres);
 
+/// The `n` nearest neighbours, nearest first; fewer where an open box holds fewer. Weights are 1.
+/// \throws std::invalid_argument when centres coincide, or without grains.
+NeighbourLists nearest_neighbours(const Box& box, std::span<const Vector3> centres, int n);
+
 /// Neighbours by radical (power) Voronoi cells; weights are the areas of the shared faces.
 ///
 /// \param radii one a grain, d: the cell of a large grain reaches farther; equal radii give the Voronoi cells

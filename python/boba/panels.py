@@ -229,10 +229,29 @@ def crystal_classes(axes, runs):
     for (label, run), colour in zip(runs, COLOURS):
         order = run.measure("order")
         rows, x, name = _abscissa(order)
-        for column, style in (("fcc_share", "-"), ("hcp_share", "--"), ("bcc_share", ":")):
-            axes.plot(order[x][rows], order[column][rows], style, color=colour, lw=1, label=f"{label} {column[:3]}")
+        # Tables written before there were templates hold the classes by bond order alone.
+        prefix = "template_" if "template_fcc_share" in order else ""
+        for lattice, style in (("fcc", "-"), ("hcp", "--"), ("bcc", ":")):
+            axes.plot(order[x][rows], order[f"{prefix}{lattice}_share"][rows], style, color=colour, lw=1,
+                      label=f"{label} {lattice}" + ("" if prefix else " (bond order)"))
+        if "solid_share" in order:
+            axes.plot(order[x][rows], order["solid_share"][rows], color=colour, lw=0.5, alpha=0.6,
+                      label=f"{label} 7 solid bonds")
     axes.set_ylim(-0.02, 1.02)
-    _label(axes, name, "share of grains", "crystal classes")
+    _label(axes, name, "share of grains", "crystals (template matching)")
+    axes.legend(fontsize=7)
+
+
+def largest_clusters(axes, runs):
+    for (label, run), colour in zip(runs, COLOURS):
+        order = run.measure("order")
+        rows, x, name = _abscissa(order)
+        axes.plot(order[x][rows], order["largest_cluster"][rows], color=colour, lw=1, label=label)
+        axes.plot(order[x][rows], order["largest_finite_cluster"][rows], ":", color=colour, lw=1)
+    axes.axhline(15, color="k", lw=0.5, ls="--")
+    axes.set_yscale("symlog", linthresh=10)
+    axes.set_ylim(bottom=0)
+    _label(axes, name, "grains", "largest cluster of ordered grains (dotted: not percolating)")
     axes.legend(fontsize=7)
 
 
@@ -301,6 +320,8 @@ def available(runs, window):
     offer("facet_shares", facet_shares, with_tables("shape"))
     offer("facet_counts", facet_counts, with_tables("grains"))
     offer("crystal_classes", crystal_classes, with_tables("order"))
+    offer("largest_clusters", largest_clusters,
+          [(label, run) for label, run in with_tables("order") if "largest_cluster" in run.measure("order")])
     offer("coordination", coordination, with_tables("coordination"))
     offer("non_affine", non_affine, with_tables("motion"))
     inside = [(label, run) for label, run in sheared

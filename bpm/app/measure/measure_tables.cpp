@@ -112,12 +112,9 @@ void MeasureTables::open_tables(FileMode mode, std::int64_t last_step) {
            "undeformed_faceted_share"});
   }
   table(scattering, "scattering", {"q_1/d", "vectors", "intensity", "form_factor", "structure"});
-  table(order, "order",
-        {"fcc_share", "hcp_share", "bcc_share", "disordered_share", "q4_mean", "q6_mean", "averaged_q4_mean",
-         "averaged_q6_mean", "neighbours_mean"});
-  table(order, "grain_order",
-        {"grain", "q4", "q6", "averaged_q4", "averaged_q6", "averaged_w4", "averaged_w6", "neighbours", "solid_bonds",
-         "class"});
+  table(order, "order", order_columns());
+  table(order, "grain_order", grain_order_columns());
+  table(order, "pair_distribution", {"r_d", "pairs", "g"});
   table(contacts, "contacts",
         {"grain",      "other",      "image_a",    "image_b",    "image_c",   "pairs",    "area_d2",
          "overlap_d",  "force_x_kd", "force_y_kd", "force_z_kd", "normal_x",  "normal_y", "normal_z",

@@ -63,6 +63,8 @@ private:
   };
 
   void open(const std::string& name, const std::vector<std::string>& columns, FileMode mode, std::int64_t last_step);
+  static std::vector<std::string> order_columns();
+  static std::vector<std::string> grain_order_columns();
   void open_tables(FileMode mode, std::int64_t last_step);
   void write(const std::string& table, const Snapshot& snapshot, const Row& values);
   void note(const std::string& quantity, const Snapshot& snapshot, double value);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The measures of structure and motion; those of stress and shape are in measure_tables.cpp.
+// The measures of structure and motion; those of order are in measure_tables_order.cpp, those of stress and shape are
+// in measure_tables.cpp.
 #include "bpm/app/measure/measure_tables.h"
 
 #include <algorithm>
@@ -36,29 +37,6 @@ void MeasureTables::add_scattering(const Frame& frame) {
           {shell.q, static_cast<double>(shell.n_vectors), shell.intensity, shell.form_factor,
            std::isfinite(shell.structure) ? std::optional(shell.structure) : std::nullopt});
   }
-}
-
-void MeasureTables::add_order(const Frame& frame) {
-  const std::vector<BondOrder> orders = bond_order(frame.neighbours, plan_.order);
-  const double n = static_cast<double>(orders.size());
-  std::array<double, 5> mean{};
-  for (std::size_t g = 0; g < orders.size(); ++g) {
-    const BondOrder& o = orders[g];
-    write("grain_order", frame.snapshot,
-          {grain_number(static_cast<int>(g)), o.q4, o.q6, o.averaged_q4, o.averaged_q6, o.averaged_w4, o.averaged_w6,
-           static_cast<double>(o.n_neighbours), static_cast<double>(o.n_solid_bonds), static_cast<double>(o.crystal)});
-    const std::array<double, 5> values = {o.q4, o.q6, o.averaged_q4, o.averaged_q6,
-                                          static_cast<double>(o.n_neighbours)};
-    for (std::size_t k = 0; k < mean.size(); ++k) {
-      mean[k] += values[k] / n;
-    }
-  }
-  const std::array<int, 4> counts = count_classes(orders);
-  const auto share = [&](CrystalClass crystal) { return counts[static_cast<std::size_t>(crystal)] / n; };
-  write("order", frame.snapshot,
-        {share(CrystalClass::fcc), share(CrystalClass::hcp), share(CrystalClass::bcc), share(CrystalClass::disordered),
-         mean[0], mean[1], mean[2], mean[3], mean[4]});
-  note("ordered_share", frame.snapshot, 1.0 - share(CrystalClass::disordered));
 }
 
 void MeasureTables::add_contacts(const Frame& frame) {

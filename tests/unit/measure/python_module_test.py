@@ -73,6 +73,25 @@ class Module(unittest.TestCase):
         with self.assertRaises(FileNotFoundError):
             boba.open(self.folder / "nothing")
 
+    def test_a_packing_crystallises_when_a_nucleus_was_seen_before_it_spanned_the_cell(self):
+        strain = np.arange(40.0)
+        share = np.where(strain < 10, 0.1, 0.9)
+        share[3] = 1.0  # for a moment
+        finite = np.where(strain < 10, 2.0 * strain, 0.0)  # 18 grains in the last frame before the onset
+        found = boba.crystallisation({"strain": strain, "solid_share": share, "largest_finite_cluster": finite})
+        self.assertTrue(found.crystallised)
+        self.assertEqual(found.nucleus, 18)
+        self.assertAlmostEqual(found.onset, 8.0)  # three of the five frames from 8 on are ordered
+        self.assertAlmostEqual(found.share, 0.9)
+        spanned = boba.crystallisation({"strain": strain, "solid_share": share, "largest_finite_cluster": finite / 2})
+        self.assertFalse(spanned.crystallised)
+        self.assertAlmostEqual(spanned.onset, 8.0)
+        lost = boba.crystallisation({"strain": strain, "solid_share": share[::-1], "largest_finite_cluster": finite})
+        self.assertIsNone(lost.onset)
+        self.assertFalse(lost.crystallised)
+        with self.assertRaises(KeyError):
+            boba.crystallisation({"strain": strain, "disordered_share": share})
+
     def test_a_row_that_is_still_being_written_is_left_out(self):
         with (self.folder / "table.csv").open("a") as file:
             file.write("600,6.0,0.3")

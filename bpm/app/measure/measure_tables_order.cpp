@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The measures of order.
+#include "bpm/app/measure/measure_tables.h"
+#include "bpm/measure/clusters.h"
+#include "bpm/measure/long_range_order.h"
+#include "bpm/measure/template_matching.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace boba {
+
+using namespace measure;
+
+namespace {
+
+/// What is known of the order of one frame.
+struct FrameOrder {
+  std::vector<BondOrder> bonds;
+  std::vector<TemplateMatch> matches;
+  std::vector<Cluster> clusters;
+  std::vector<int> cluster_of;        ///< per grain: 1 for the largest cluster, 0 outside of all
+  std::vector<double> volumes;        ///< per grain: Voronoi; empty in a cell that is not periodic
+  std::optional<BraggPeak> bragg;     ///< likewise
+  std::vector<PairShell> pair_shells; ///< likewise
+};
+
+FrameOrder order_of(const Box& box, const std::vector<Vector3>& centres, const NeighbourLists& neighbours,
+                    const MeasurePlan& plan) {
+  FrameOrder order;
+  order.bonds = bond_order(neighbours, plan.order);
+  order.matches = match_templates(box, centres, plan.templates);
+  order.clusters = solid_clusters(box, centres, neighbours, order.bonds, plan.order);
+  order.cluster_of.assign(centres.size(), 0);
+  for (std::size_t k = 0; k < order.clusters.size(); ++k) {
+    for (const int grain : order.clusters[k].grains) {
+      order.cluster_of[grain] = static_cast<int>(k) + 1;
+    }
+  }
+  if (box.periodic() == std::array{true, true, true}) {
+    order.volumes = voronoi_volumes(box, centres, std::vector<double>(centres.size(), 0.0));
+    order.bragg = bragg_peak(box, centres);
+    order.pair_shells = pair_distribution(box, centres);
+  }
+  return order;
+}
+
+} // namespace
+
+std::vector<std::string> MeasureTables::order_columns() {
+  return {"fcc_share",
+          "hcp_share",
+          "bcc_share",
+          "disordered_share",
+          "q4_mean",
+          "q6_mean",
+          "averaged_q4_mean",
+          "averaged_q6_mean",
+          "neighbours_mean",
+          "unknown_share",
+          "template_fcc_share",
+          "template_hcp_share",
+          "template_bcc_share",
+          "template_sc_share",
+          "template_icosahedral_share",
+          "template_unknown_share",
+          "template_rmsd_mean",
+          "template_shear_mean",
+          "solid_share",
+          "clusters",
+          "largest_cluster",
+          "largest_percolates_x",
+          "largest_percolates_y",
+          "largest_percolates_z",
+          "largest_finite_cluster",
+          "bragg_peak",
+          "voronoi_volume_mean_d3",
+          "voronoi_volume_deviation_d3"};
+}
+
+std::vector<std::string> MeasureTables::grain_order_columns() {
+  return {"grain",          "q4",          "q6",
+          "averaged_q4",    "averaged_q6", "averaged_w4",
+          "averaged_w6",    "neighbours",  "solid_bonds",
+          "class",          "template",    "template_rmsd",
+          "template_shear", "cluster",     "voronoi_volume_d3"};
+}
+
+void MeasureTables::add_order(const Frame& frame) {
+  const FrameOrder order = order_of(frame.snapshot.box, frame.centres, frame.neighbours, plan_);
+  const std::size_t n = order.bonds.size();
+  for (std::size_t g = 0; g < n; ++g) {
+    const BondOrder& o = order.bonds[g];
+    const TemplateMatch& match = order.matches[g];
+    write("grain_order", frame.snapshot,
+          {grain_number(static_cast<int>(g)), o.q4, o.q6, o.averaged_q4, o.averaged_q6, o.averaged_w4, o.averaged_w6,
+           static_cast<double>(o.n_neighbours), static_cast<double>(o.n_solid_bonds), static_cast<double>(o.crystal),
+           static_cast<double>(match.lattice), match.rmsd, match.shear, static_cast<double>(order.cluster_of[g]),
+           order.volumes.empty() ? std::nullopt : std::optional(order.volumes[g])});
+  }
+  for (const PairShell& shell : order.pair_shells) {
+    write("pair_distribution", frame.snapshot, {shell.r, static_cast<double>(shell.n_pairs), shell.g});
+  }
+
+  const auto classes = count_classes(order.bonds);
+  const auto lattices = count_lattices(order.matches);
+  const auto mean = [&](const auto& value) {
+    double sum = 0.0;
+    for (std::size_t g = 0; g < n; ++g) {
+      sum += static_cast<double>(value(g));
+    }
+    return sum / static_cast<double>(n);
+  };
+  Row row;
+  for (const CrystalClass crystal :
+       {CrystalClass::fcc, CrystalClass::hcp, CrystalClass::bcc, CrystalClass::disordered}) {
+    row.emplace_back(classes[static_cast<std::size_t>(crystal)] / static_cast<double>(n));
+  }
+  row.emplace_back(mean([&](std::size_t g) { return order.bonds[g].q4; }));
+  row.emplace_back(mean([&](std::size_t g) { return order.bonds[g].q6; }));
+  row.emplace_back(mean([&](std::size_t g) { return order.bonds[g].averaged_q4; }));
+  row.emplace_back(mean([&](std::size_t g) { return order.bonds[g].averaged_q6; }));
+  row.emplace_back(mean([&](std::size_t g) { return order.bonds[g].n_neighbours; }));
+  row.emplace_back(classes[static_cast<std::size_t>(CrystalClass::unknown)] / static_cast<double>(n));
+  for (const Lattice lattice :
+       {Lattice::fcc, Lattice::hcp, Lattice::bcc, Lattice::sc, Lattice::icosahedral, Lattice::unknown}) {
+    row.emplace_back(lattices[static_cast<std::size_t>(lattice)] / static_cast<double>(n));
+  }
+  row.emplace_back(mean([&](std::size_t g) { return order.matches[g].rmsd; }));
+  row.emplace_back(mean([&](std::size_t g) { return order.matches[g].shear; }));
+  row.emplace_back(mean([&](std::size_t g) { return order.cluster_of[g] > 0; }));
+  const Cluster largest = order.clusters.empty() ? Cluster{} : order.clusters.front();
+  row.emplace_back(static_cast<double>(order.clusters.size()));
+  row.emplace_back(static_cast<double>(largest.grains.size()));
+  for (const bool percolates : largest.percolates) {
+    row.emplace_back(percolates ? 1.0 : 0.0);
+  }
+  row.emplace_back(static_cast<double>(largest_finite(order.clusters)));
+  if (order.volumes.empty()) {
+    row.resize(row.size() + 3);
+  } else {
+    const double volume = mean([&](std::size_t g) { return order.volumes[g]; });
+    row.emplace_back(order.bragg->height);
+    row.emplace_back(volume);
+    row.emplace_back(std::sqrt(mean([&](std::size_t g) { return std::pow(order.volumes[g] - volume, 2); })));
+  }
+  write("order", frame.snapshot, row);
+  const auto share = [&](auto first, auto second, auto third, const auto& counts) {
+    return (counts[static_cast<std::size_t>(first)] + counts[static_cast<std::size_t>(second)] +
+            counts[static_cast<std::size_t>(third)]) /
+           static_cast<double>(n);
+  };
+  note("ordered_share", frame.snapshot, share(CrystalClass::fcc, CrystalClass::hcp, CrystalClass::bcc, classes));
+  note("template_ordered_share", frame.snapshot, share(Lattice::fcc, Lattice::hcp, Lattice::bcc, lattices));
+}
+
+} // namespace boba
