@@ -3,7 +3,9 @@
 
 #include "bpm/measure/parallel_loop.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -179,16 +181,30 @@ FitMoments fit_moments(const Template& shape, const Assignment& assignment, std:
   return m;
 }
 
+/// The rotation R with the largest sum of p . R w is the eigenvector, as a quaternion, of the largest eigenvalue of a
+/// symmetric matrix; the sum is that eigenvalue. Source: Horn, J. Opt. Soc. Am. A 4, 629 (1987).
+Eigen::Matrix4d horn_matrix(const Matrix3& product) {
+  const Matrix3 s = product.transpose(); // sum w p^T
+  const Matrix3 sum = s + s.transpose();
+  const Vector3 axis(s(1, 2) - s(2, 1), s(2, 0) - s(0, 2), s(0, 1) - s(1, 0));
+  Eigen::Matrix4d n;
+  n(0, 0) = s.trace();
+  n.block<1, 3>(0, 1) = axis.transpose();
+  n.block<3, 1>(1, 0) = axis;
+  n.block<3, 3>(1, 1) = sum - s.trace() * Matrix3::Identity();
+  return n;
+}
+
 TemplateFit fit_similarity(const Template& shape, const Assignment& assignment, std::span<const Vector3> p) {
   const FitMoments m = fit_moments(shape, assignment, p);
-  const Eigen::JacobiSVD<Matrix3, Eigen::NoQRPreconditioner> svd(m.product, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vector3 sign(1.0, 1.0, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0);
-  const double trace = svd.singularValues().dot(sign);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(horn_matrix(m.product));
+  const double trace = solver.eigenvalues()[3];
   TemplateFit result{assignment, std::numeric_limits<double>::infinity(), Matrix3::Identity()};
   if (trace > 0.0) {
     const double square = m.w_square - trace * trace / m.p_square;
     result.rmsd = std::sqrt(std::max(0.0, square) / static_cast<double>(shape.points.size() + 1));
-    result.turn = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose() * (trace / m.w_square);
+    const Eigen::Vector4d q = solver.eigenvectors().col(3);
+    result.turn = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix() * (trace / m.w_square);
   }
   return result;
 }
@@ -200,12 +216,12 @@ double equivalent_shear(const Template& shape, const Assignment& assignment, std
     second += w * w.transpose();
   }
   const Matrix3 map = fit_moments(shape, assignment, p).product * second.inverse();
-  const Eigen::JacobiSVD<Matrix3> svd(map);
-  const Vector3 stretch = svd.singularValues();
-  if (!(stretch.minCoeff() > 0.0)) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(map.transpose() * map, Eigen::EigenvaluesOnly);
+  const Vector3 squares = solver.eigenvalues();
+  if (!(squares.minCoeff() > 0.0)) {
     return std::numeric_limits<double>::infinity();
   }
-  const Eigen::Array3d logs = stretch.array().log();
+  const Eigen::Array3d logs = 0.5 * squares.array().log();
   return std::sqrt(2.0 * (logs - logs.mean()).square().sum());
 }
 

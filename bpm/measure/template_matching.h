@@ -42,8 +42,7 @@ struct TemplateMatch {
 /// tell what it came from.
 /// \param neighbours at least as many as there are, sorted by distance (nearest_neighbours); fewer than a template has
 /// do not match it
-/// Source: Larsen, Schmidt, Schiotz, Modelling Simul. Mater. Sci. Eng. 24, 055007 (2016); rotation: Umeyama, IEEE
-/// Trans. Pattern Anal. 13, 376 (1991).
+/// Source: Larsen, Schmidt, Schiotz, Modelling Simul. Mater. Sci. Eng. 24, 055007 (2016).
 TemplateMatch match_templates(std::span<const Neighbour> neighbours, const TemplateOptions& options = {});
 
 /// The same for every grain. A grain with a periodic copy of itself among the neighbours that a template compares is
