@@ -28,7 +28,7 @@ struct Arguments {
 
 Packing packing_of(const Arguments& a, const Ranks& ranks) {
   Packing packing;
-  ranks.together([&] {
+  ranks.collectively([&] {
     if (ranks.is_root()) {
       packing = repeated(dense_packing(a.grains, a.nodes, a.alpha), a.times);
     }

@@ -171,7 +171,7 @@ CheckpointData constant_part(const RunSetup& setup, const Simulation& simulation
 }
 
 void share_checkpoint(LatestCheckpoint& checkpoint, const Ranks& ranks) {
-  if (ranks.many()) {
+  if (ranks.is_distributed()) {
     share_but_nodes(checkpoint.data.text, ranks);
     share_but_nodes(checkpoint.data.real, ranks);
     share_but_nodes(checkpoint.data.integer, ranks);

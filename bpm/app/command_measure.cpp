@@ -18,7 +18,7 @@ struct MeasureArguments {
 };
 
 ExitCode measure_stored_frames(MeasureArguments a, const Ranks& ranks) {
-  ranks.together([&] { a.options.plan.kinds = measure_kinds(a.what); });
+  ranks.collectively([&] { a.options.plan.kinds = measure_kinds(a.what); });
   a.options.plan.neighbours = a.neighbours == "voronoi" ? NeighbourRule::voronoi : NeighbourRule::solid_angle;
   if (!a.window.empty()) {
     a.options.window = {a.window[0], a.window[1]};

@@ -55,15 +55,15 @@ ExitCode resume(const ResumeArguments& a, const Ranks& ranks) {
   std::optional<RunSetup> setup;
   {
     const LatestCheckpoint checkpoint = read(a, folder, ranks);
-    ranks.together([&] { setup = setup_from(checkpoint, folder); });
+    ranks.collectively([&] { setup = setup_from(checkpoint, folder); });
   }
   setup->scene.options.threads = a.threads.value_or(setup->scene.options.threads);
-  if (ranks.many() && !a.threads) {
+  if (ranks.is_distributed() && !a.threads) {
     setup->scene.options.threads = std::min(setup->scene.options.threads, threads_of_a_rank(ranks));
   }
   setup->scene.wall_time = a.wall_time ? a.wall_time : setup->scene.wall_time;
   setup->quiet = a.quiet;
-  ranks.together([&] { setup->stages = resolve_pressures(setup->scene, setup->modulus); });
+  ranks.collectively([&] { setup->stages = resolve_pressures(setup->scene, setup->modulus); });
   return run_scene(std::move(*setup), ranks);
 }
 

@@ -78,14 +78,14 @@ RunSetup prepare(const RunArguments& a, const Ranks& ranks) {
 
 ExitCode run(const RunArguments& a, const Ranks& ranks) {
   std::optional<RunSetup> setup;
-  ranks.together([&] { setup = prepare(a, ranks); });
+  ranks.collectively([&] { setup = prepare(a, ranks); });
   share_packing(setup->packing, ranks);
   ranks.broadcast(setup->modulus);
   ranks.broadcast(setup->scene.options.dt);
-  if (ranks.many() && !a.threads) {
+  if (ranks.is_distributed() && !a.threads) {
     setup->scene.options.threads = std::min(setup->scene.options.threads, threads_of_a_rank(ranks));
   }
-  ranks.together([&] {
+  ranks.collectively([&] {
     setup->stages = resolve_pressures(setup->scene, setup->modulus);
     if (ranks.is_root()) {
       // Everything that can be wrong with the input has been found by now: from here on files are written.

@@ -36,7 +36,7 @@ void tell(int rank, const std::string& message) {
 
 ExitCode on_all_ranks(const std::function<ExitCode(const Ranks&)>& work) {
   const MessagePassing mpi;
-  if (!mpi.ranks().many()) {
+  if (!mpi.ranks().is_distributed()) {
     return work(mpi.ranks());
   }
   try {

@@ -75,7 +75,7 @@ public:
   }
 
   ExitCode run() {
-    ranks_.together([&] { check_instruction_sets(simulation_, ranks_); });
+    ranks_.collectively([&] { check_instruction_sets(simulation_, ranks_); });
     introduce();
     try {
       return run_stages();
@@ -96,7 +96,7 @@ private:
   /// Returns the file, on rank 0. What goes wrong there, all hear of.
   std::filesystem::path write_checkpoint() {
     std::filesystem::path file;
-    ranks_.together([&] { file = checkpoints_->write(simulation_); });
+    ranks_.collectively([&] { file = checkpoints_->write(simulation_); });
     return file;
   }
 
@@ -108,7 +108,7 @@ private:
     const std::string begin = setup_.restart
                                   ? fmt::format("going on at step {} from {}", simulation_.step(), setup_.restart->file)
                                   : "starting";
-    const std::string on_ranks = ranks_.many() ? fmt::format("{} ranks of ", ranks_.size()) : "";
+    const std::string on_ranks = ranks_.is_distributed() ? fmt::format("{} ranks of ", ranks_.size()) : "";
     log_.say(fmt::format("{}: {} grains, {} nodes, {}{} threads, {} precision, {}; {}", setup_.scene.title,
                          simulation_.packing().n_grains(), numbers_.n_nodes, on_ranks, setup_.scene.options.threads,
                          setup_.scene.options.precision == Precision::mixed ? "mixed" : "double",
@@ -164,7 +164,7 @@ private:
     log_.note(fmt::format("seconds: bonds {:.2f}, contacts {:.2f}, search {:.2f}, integration {:.2f}; {} steps, {} "
                           "contact lists",
                           t.bonds, t.contacts, t.search, t.integration, t.steps, t.list_builds));
-    if (ranks_.many()) {
+    if (ranks_.is_distributed()) {
       log_.note(fmt::format(
           "rank 0: halo {:.2f} s, reductions {:.2f} s; received {} messages, {} bytes of nodes; {} halos, {} "
           "grains moved here",
@@ -190,7 +190,7 @@ private:
 
 ExitCode run_scene(RunSetup setup, const Ranks& ranks) {
   std::unique_ptr<Session> session;
-  ranks.together([&] { session = std::make_unique<Session>(std::move(setup), ranks); });
+  ranks.collectively([&] { session = std::make_unique<Session>(std::move(setup), ranks); });
   return session->run();
 }
 

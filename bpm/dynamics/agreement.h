@@ -31,11 +31,11 @@ public:
   /// This rank wishes to stop (or not); the others hear of it with the next exchange.
   void wish_to_stop(bool wish) {
     wish_ = wish;
-    stop_ = ranks_.many() ? stop_ : wish;
+    stop_ = ranks_.is_distributed() ? stop_ : wish;
   }
   bool stop() const { return stop_; }
   /// Seconds since the beginning, by rank 0's clock at the last exchange.
-  double seconds() const { return ranks_.many() ? seconds_ : own_seconds(); }
+  double seconds() const { return ranks_.is_distributed() ? seconds_ : own_seconds(); }
 
 private:
   using Clock = std::chrono::steady_clock;

@@ -37,7 +37,7 @@ void apply_clamp(Clamp& clamp, const LaneLayout& layout, LaneState& state, const
 }
 
 void share_clamp(Clamp& clamp, const Distribution& distribution, int n_grains) {
-  if (!distribution.many()) {
+  if (!distribution.is_distributed()) {
     return;
   }
   // A row a grain with its number of clamped nodes, then rows wide enough for the largest of these.

@@ -77,7 +77,7 @@ struct Simulation::Impl {
     const Virial virial = full ? Virial::full : driver->needs_pressure() || look ? Virial::trace : Virial::none;
     stepper.advance(virial);
     if (look) {
-      stepper.ranks().together([&] { stepper.check_alternation(); });
+      stepper.ranks().collectively([&] { stepper.check_alternation(); });
     }
     stepper.move_cell(driver->update(stepper));
     check_bonds();
@@ -91,13 +91,13 @@ struct Simulation::Impl {
   /// What goes wrong while one rank writes must be known to all.
   void show(std::span<Observer* const> observers, Simulation& self) const {
     for (Observer* observer : observers) {
-      stepper.ranks().together([&] { observer->observe(self, progress()); });
+      stepper.ranks().collectively([&] { observer->observe(self, progress()); });
     }
   }
 
   void balance() {
     const double now = stepper.agreement().seconds();
-    if (stepper.ranks().many() && now - last_balance >= stepper.options().rebalance_seconds) {
+    if (stepper.ranks().is_distributed() && now - last_balance >= stepper.options().rebalance_seconds) {
       stepper.rebalance();
       last_balance = now;
     }
@@ -244,8 +244,8 @@ SavedState shared(SavedState state, const Ranks& ranks) {
 } // namespace
 
 void Simulation::restore(const SavedState& of_root) {
-  const SavedState of_all = ranks().many() ? shared(of_root, ranks()) : SavedState{};
-  const SavedState& state = ranks().many() ? of_all : of_root;
+  const SavedState of_all = ranks().is_distributed() ? shared(of_root, ranks()) : SavedState{};
+  const SavedState& state = ranks().is_distributed() ? of_all : of_root;
   try {
     impl_->stepper.restore(state);
     impl_->stage_index = static_cast<int>(state.integer.at("stage").at(0));

@@ -105,7 +105,7 @@ void Stepper::drift() {
   const Agreement::Speeds speeds = agreement_.exchange(largest_speeds(results));
   reduction_seconds_ += omp_get_wtime() - drifted;
   if (!(speeds.largest <= largest_allowed_speed())) {
-    distribution_.ranks->together([&] { check_drift(results); });
+    distribution_.ranks->collectively([&] { check_drift(results); });
   }
   forces_.contact_list().note_motion(cell_map_, options_.dt * speeds.largest, options_.dt * speeds.common);
   cell_map_.setIdentity();

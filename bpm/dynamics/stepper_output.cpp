@@ -52,7 +52,7 @@ Snapshot Stepper::snapshot(Simulation::Parts parts) const {
     }
     centre /= layout_.n_nodes(g);
   }
-  if (parts.own && ranks().many()) {
+  if (parts.own && ranks().is_distributed()) {
     snapshot.grains = layout_.grains();
   } else {
     gather(snapshot.position);

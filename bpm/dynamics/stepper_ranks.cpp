@@ -41,11 +41,11 @@ std::vector<std::byte> Stepper::own_nodes() const {
 void Stepper::scatter_nodes(const std::vector<std::byte>& all) {
   const std::size_t size = state_.node_bytes();
   std::vector<std::byte> own;
-  if (ranks().many()) {
+  if (ranks().is_distributed()) {
     own.resize(size * distribution_.ownership.n_nodes_of(ranks().rank()));
     forest_from_root()->copy(size, all.data(), own.data());
   }
-  const std::byte* from = ranks().many() ? own.data() : all.data();
+  const std::byte* from = ranks().is_distributed() ? own.data() : all.data();
   for (const int g : layout_.grains()) {
     state_.unpack(g, from);
     from += size * layout_.n_nodes(g);
@@ -53,7 +53,7 @@ void Stepper::scatter_nodes(const std::vector<std::byte>& all) {
 }
 
 void Stepper::gather(std::vector<Vector3>& values) const {
-  if (ranks().many()) {
+  if (ranks().is_distributed()) {
     std::vector<Vector3> all(ranks().is_root() ? packing_.first_nodes().back() : 0);
     forest_from_root()->collect(sizeof(Vector3), values.data(), all.data());
     values.swap(all);
@@ -105,7 +105,7 @@ PlacementInput Stepper::placement_input() const {
 }
 
 void Stepper::rebalance() {
-  if (!ranks().many()) {
+  if (!ranks().is_distributed()) {
     return;
   }
   const PlacementInput input = placement_input();
@@ -117,7 +117,7 @@ void Stepper::rebalance() {
 }
 
 void Stepper::move_grains(std::vector<int> owner) {
-  if (!ranks().many()) {
+  if (!ranks().is_distributed()) {
     return;
   }
   const std::size_t size = state_.node_bytes();

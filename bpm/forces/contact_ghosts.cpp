@@ -41,7 +41,7 @@ void ContactList::share_bounds(std::vector<Bounds>& bounds) const {
 
 /// Finds out which grains of other ranks stand in our pairs, and which of ours other ranks know nothing of yet.
 void ContactList::find_ghosts() {
-  if (!distribution_.many()) {
+  if (!distribution_.is_distributed()) {
     return;
   }
   const std::vector<int> before = built_ ? ghosts_ : std::vector<int>{};
@@ -81,7 +81,7 @@ void ContactList::find_ghosts() {
 
 /// Brings frames, strays and places of the ghosts up to what their owners have just found.
 void ContactList::follow_ghosts() {
-  if (!distribution_.many()) {
+  if (!distribution_.is_distributed()) {
     return;
   }
   std::vector<GhostRecord> own, ghosts(ghosts_.size());

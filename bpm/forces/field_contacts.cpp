@@ -82,7 +82,7 @@ void ForceField::prepare_contacts(const LaneState& state, const Box& box) {
 
 /// Says where the nodes of each grain are found, those of other ranks included.
 void ForceField::know_nodes() {
-  if (distribution_.many()) {
+  if (distribution_.is_distributed()) {
     halo_.rebuild(contact_list_, layout_, distribution_, ContactHalo::Nodes::listed);
   }
   nodes_of_.assign(layout_.n_grains(), nullptr);
@@ -96,7 +96,7 @@ void ForceField::know_nodes() {
 
 /// Finds the candidates that may touch in the steps to come; the halo is then of their nodes alone.
 void ForceField::list_near(const Box& box) {
-  if (distribution_.many()) {
+  if (distribution_.is_distributed()) {
     halo_.begin(contact_nodes_.get());
     halo_.end();
   }
@@ -107,7 +107,7 @@ void ForceField::list_near(const Box& box) {
     find_near(pairs[p], box, reach);
   }
   contact_list_.list_near();
-  if (distribution_.many()) {
+  if (distribution_.is_distributed()) {
     halo_.rebuild(contact_list_, layout_, distribution_, ContactHalo::Nodes::near);
   }
 }

@@ -188,13 +188,13 @@ void ForceField::evaluate(LaneState& state, const Box& box, const Evaluation& wh
   collected_ = false;
   search_seconds += omp_get_wtime() - start;
   wall_forces_.assign(walls_.size(), std::vector<double>(layout_.n_grains(), 0.0));
-  if (distribution_.many()) {
+  if (distribution_.is_distributed()) {
     const double asked = omp_get_wtime();
     halo_.begin(contact_nodes_.get());
     halo_seconds += omp_get_wtime() - asked;
   }
   evaluate_part(own_part_, state, box, what);
-  if (distribution_.many()) {
+  if (distribution_.is_distributed()) {
     const double waited = omp_get_wtime();
     halo_.end();
     halo_seconds += omp_get_wtime() - waited;
@@ -216,7 +216,7 @@ void ForceField::sum_walls() {
 
 void ForceField::share_sums(Virial virial) {
   static_assert(sizeof(GrainSums) == 14 * sizeof(double));
-  if (!distribution_.many() || virial == Virial::none) {
+  if (!distribution_.is_distributed() || virial == Virial::none) {
     return;
   }
   if (virial == Virial::full) {

@@ -169,10 +169,10 @@ private:
   void sum_walls();
   // With several ranks, what others ask for is looked after too.
   std::span<const std::int32_t> listed(int grain) const {
-    return distribution_.many() && halo_.is_built() ? halo_.listed(grain) : contact_list_.listed(grain);
+    return distribution_.is_distributed() && halo_.is_built() ? halo_.listed(grain) : contact_list_.listed(grain);
   }
   std::span<const std::int32_t> near(int grain) const {
-    return distribution_.many() && halo_.is_built() ? halo_.near(grain) : contact_list_.near(grain);
+    return distribution_.is_distributed() && halo_.is_built() ? halo_.near(grain) : contact_list_.near(grain);
   }
 
   const LaneLayout& layout_;

@@ -294,10 +294,10 @@ std::filesystem::path write_checkpoint(const std::filesystem::path& directory, c
     ranks.broadcast(beside);
     std::optional<PieceWriter> out;
     std::vector<std::uint64_t> places;
-    ranks.together([&] { out.emplace(beside); });
+    ranks.collectively([&] { out.emplace(beside); });
     ranks.on_root([&] { places = write_entries(*out, data, nodes); });
     ranks.broadcast(places);
-    ranks.together([&] {
+    ranks.collectively([&] {
       write_nodes(*out, data, nodes, places);
       if (!ranks.is_root()) {
         out->file().sync();

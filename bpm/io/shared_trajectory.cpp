@@ -41,17 +41,17 @@ SharedTrajectory::SharedTrajectory(const Ranks& ranks, const std::filesystem::pa
                                    std::vector<std::int64_t> first_node, const Open& open)
     : ranks_(ranks), first_node_(std::move(first_node)) {
   ranks.on_root([&] {
-    writer_.emplace(open(ranks.many()));
+    writer_.emplace(open(ranks.is_distributed()));
     is_compressed_ = writer_->is_compressed();
   });
-  if (ranks.many()) {
+  if (ranks.is_distributed()) {
     ranks.broadcast(is_compressed_);
-    ranks.together([&] { file_.emplace(path); });
+    ranks.collectively([&] { file_.emplace(path); });
   }
 }
 
 void SharedTrajectory::write(const Snapshot& own) {
-  if (!ranks_.many()) {
+  if (!ranks_.is_distributed()) {
     writer_->write(own);
     return;
   }
@@ -84,7 +84,7 @@ void SharedTrajectory::write_together(const Snapshot& own) {
     write_gathered(own);
     return;
   }
-  ranks_.together([&] { write_nodes(own, frame.places); });
+  ranks_.collectively([&] { write_nodes(own, frame.places); });
   ranks_.on_root([&] { writer_->finish(own); });
 }
 
@@ -118,12 +118,12 @@ void SharedTrajectory::write_gathered(const Snapshot& own) {
 }
 
 void SharedTrajectory::close() {
-  ranks_.together([&] {
+  ranks_.collectively([&] {
     if (file_) {
       file_->close();
     }
   });
-  ranks_.together([&] {
+  ranks_.collectively([&] {
     if (writer_) {
       writer_->close();
     }

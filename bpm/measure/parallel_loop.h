@@ -33,7 +33,7 @@ template <class Body> void parallel_loop(std::int64_t n, const Body& body) {
 /// The same for this rank's own of some items; together the ranks do all. Collective: what is thrown on one rank is
 /// thrown on all (RankError).
 template <class Body> void parallel_loop(const DealtItems& items, const Body& body) {
-  items.ranks().together([&] { parallel_loop(items.n_own(), [&](std::int64_t k) { body(items.own(k)); }); });
+  items.ranks().collectively([&] { parallel_loop(items.n_own(), [&](std::int64_t k) { body(items.own(k)); }); });
 }
 
 } // namespace boba::measure

@@ -75,7 +75,7 @@ std::vector<RowRange> slabs(const std::vector<ReciprocalRow>& rows) {
 /// Gives all ranks the values at the wave vectors of all ranges, each from the rank that has summed there.
 void share_ranges(const DealtItems& items, const std::vector<ReciprocalRow>& rows, const std::vector<RowRange>& ranges,
                   std::vector<double>& values) {
-  if (!items.ranks().many()) {
+  if (!items.ranks().is_distributed()) {
     return;
   }
   const auto begin = [&](std::size_t i) { return values.begin() + rows[ranges[i].first].first; };

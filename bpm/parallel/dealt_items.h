@@ -34,7 +34,7 @@ public:
   /// \param part what of an entry is shared: a plain value without pointers, or a std::vector of such, of any size
   /// \throws std::length_error for more than 2^31 values, on all ranks.
   template <class Entry, class Part = std::identity> void share(std::vector<Entry>& all, Part part = {}) const {
-    if (ranks_->many()) {
+    if (ranks_->is_distributed()) {
       share_parts(all, part, std::type_identity<std::remove_cvref_t<std::invoke_result_t<Part, Entry&>>>());
     }
   }

@@ -14,8 +14,8 @@ struct Distribution {
     static const Distribution one;
     return one;
   }
-  bool many() const { return ranks->many(); }
-  bool mine(int grain) const { return !many() || ownership.owner(grain) == ranks->rank(); }
+  bool is_distributed() const { return ranks->is_distributed(); }
+  bool mine(int grain) const { return !is_distributed() || ownership.owner(grain) == ranks->rank(); }
 };
 
 } // namespace boba

@@ -33,7 +33,7 @@ MessagePassing::MessagePassing() {
     started_ = true;
     ranks_ = Ranks::of_world();
     const char* started = std::getenv("PMI_SIZE");
-    if (!ranks_.many() && started != nullptr && std::strtol(started, nullptr, 10) > 1) {
+    if (!ranks_.is_distributed() && started != nullptr && std::strtol(started, nullptr, 10) > 1) {
       throw std::invalid_argument(
           "started several times by a launcher that MPI does not know; use mpirun, or srun --mpi=pmix");
     }
@@ -56,7 +56,7 @@ void MessagePassing::abort(int exit_code) const {
 
 int threads_of_a_rank(const Ranks& ranks) {
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency())); // those it is bound to
-  if (!ranks.many()) {
+  if (!ranks.is_distributed()) {
     return cores;
   }
   const int on_machine = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));

@@ -139,7 +139,7 @@ double imbalance(const PlacementInput& input, std::span<const int> owner) {
 }
 
 Distribution distribute(const Packing& packing, const Ranks& ranks, Precision precision) {
-  if (!ranks.many()) {
+  if (!ranks.is_distributed()) {
     return {};
   }
   const std::vector<int> n_nodes = packing.nodes_of_grains();
@@ -149,7 +149,7 @@ Distribution distribute(const Packing& packing, const Ranks& ranks, Precision pr
 }
 
 std::vector<int> own_grains(const Packing& packing, const Distribution& distribution) {
-  if (!distribution.many()) {
+  if (!distribution.is_distributed()) {
     std::vector<int> all(packing.n_grains());
     std::iota(all.begin(), all.end(), 0);
     return all;

@@ -53,13 +53,13 @@ Ranks Ranks::of_world() {
 }
 
 void Ranks::largest(std::span<double> values) const {
-  if (many()) {
+  if (is_distributed()) {
     MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
   }
 }
 
 std::int64_t Ranks::sum(std::int64_t value) const {
-  if (many()) {
+  if (is_distributed()) {
     MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT64_T, MPI_SUM, MPI_COMM_WORLD);
   }
   return value;
@@ -74,7 +74,7 @@ void Ranks::broadcast_bytes(void* values, std::size_t bytes) const {
 }
 
 void Ranks::any(std::span<char> flags) const {
-  if (many()) {
+  if (is_distributed()) {
     MPI_Allreduce(MPI_IN_PLACE, flags.data(), static_cast<int>(flags.size()), MPI_BYTE, MPI_BOR, MPI_COMM_WORLD);
   }
 }
@@ -98,7 +98,7 @@ void Ranks::gather_all(const void* own, void* all, std::span<const std::int64_t>
 }
 
 void Ranks::share_rows(std::span<double> table, int width, const Ownership& ownership) const {
-  if (!many()) {
+  if (!is_distributed()) {
     return;
   }
   std::vector<int> counts(size_), starts(size_);

@@ -34,7 +34,7 @@ public:
   int rank() const { return rank_; }
   int size() const { return size_; }
   bool is_root() const { return rank_ == 0; }
-  bool many() const { return size_ > 1; }
+  bool is_distributed() const { return size_ > 1; }
 
   /// Element by element the largest of all ranks, in place.
   void largest(std::span<double> values) const;
@@ -43,7 +43,7 @@ public:
     return value;
   }
   double smallest(double value) const { return -largest(-value); }
-  bool any(bool value) const { return many() ? largest(value ? 1.0 : 0.0) > 0.0 : value; }
+  bool any(bool value) const { return is_distributed() ? largest(value ? 1.0 : 0.0) > 0.0 : value; }
   /// Element by element whether any rank has set it (to 1; else 0), in place.
   void any(std::span<char> flags) const;
   std::int64_t sum(std::int64_t value) const;
@@ -51,7 +51,7 @@ public:
   /// Rank 0's values for all; sizes are taken over too.
   void broadcast_bytes(void* values, std::size_t bytes) const;
   template <class T> void broadcast(T& values) const {
-    if (!many()) {
+    if (!is_distributed()) {
       return;
     }
     if constexpr (std::is_trivially_copyable_v<T>) {
@@ -66,7 +66,7 @@ public:
 
   /// The values of all ranks on rank 0, one rank's after the other; elsewhere nothing. \throws as gather_all
   template <class T> std::vector<T> gathered(const std::vector<T>& own) const {
-    if (!many()) {
+    if (!is_distributed()) {
       return own;
     }
     const std::vector<std::int64_t> counts = counts_of_ranks(std::ssize(own));
@@ -83,8 +83,8 @@ public:
   void gather_all(const void* own, void* all, std::span<const std::int64_t> counts, std::size_t item_bytes) const;
 
   /// Calls work() on all ranks. When it throws on any, all throw RankError with the message of the first that did.
-  template <class Work> void together(Work&& work) const {
-    if (!many()) {
+  template <class Work> void collectively(Work&& work) const {
+    if (!is_distributed()) {
       work();
       return;
     }
@@ -103,7 +103,7 @@ public:
 
   /// The same for work that is rank 0's alone.
   template <class Work> void on_root(Work&& work) const {
-    together([&] {
+    collectively([&] {
       if (is_root()) {
         work();
       }

@@ -32,7 +32,7 @@ Box shared(const Box& box, const Ranks& ranks) {
 } // namespace
 
 void share_packing(Packing& packing, const Ranks& ranks) {
-  if (!ranks.many()) {
+  if (!ranks.is_distributed()) {
     return;
   }
   packing.box = shared(packing.box, ranks);

@@ -140,7 +140,7 @@ void run_case(const std::string& name, const Ranks& ranks, Bits& bits) {
   bits.add("step", static_cast<double>(simulation.step()));
   bits.add(simulation.snapshot(all_parts));
   // Not part of the outcome, but the run must have been what it says it is.
-  if (ranks.many() && simulation.timings().halo_bytes == 0 && name != "clamps" && ranks.is_root()) {
+  if (ranks.is_distributed() && simulation.timings().halo_bytes == 0 && name != "clamps" && ranks.is_root()) {
     throw std::runtime_error("rank 0 has received no node of another");
   }
 }
@@ -151,7 +151,7 @@ void run_migrating(const Ranks& ranks, Bits& bits) {
   stepper.start();
   std::mt19937 random(5);
   for (int step = 0; step < 300; ++step) {
-    if (step % 7 == 3 && ranks.many()) {
+    if (step % 7 == 3 && ranks.is_distributed()) {
       std::vector<int> owner(stepper.packing().n_grains());
       for (int& rank : owner) {
         rank = static_cast<int>(random() % ranks.size());

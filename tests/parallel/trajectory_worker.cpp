@@ -36,7 +36,7 @@ Snapshot frame_of(const Packing& packing, std::int64_t step) {
 }
 
 Snapshot own_part(const Snapshot& whole, const Packing& packing, const Ranks& ranks) {
-  if (!ranks.many()) {
+  if (!ranks.is_distributed()) {
     return whole;
   }
   Snapshot own = whole;

@@ -178,11 +178,11 @@ std::string write_averages(const std::filesystem::path& path, const MeasureTable
 } // namespace
 
 MeasureRunResult measure_run(const MeasureRunOptions& options, const Ranks& ranks) {
-  if (options.threads > 0 || ranks.many()) {
+  if (options.threads > 0 || ranks.is_distributed()) {
     omp_set_num_threads(options.threads > 0 ? options.threads : threads_of_a_rank(ranks));
   }
   std::optional<TrajectoryReader> reader;
-  ranks.together([&] {
+  ranks.collectively([&] {
     check(options);
     reader.emplace(trajectory_of(options.run));
     if (reader->n_frames() == 0) {
@@ -196,14 +196,14 @@ MeasureRunResult measure_run(const MeasureRunOptions& options, const Ranks& rank
   const auto n_frames = static_cast<std::int64_t>(ranks.smallest(static_cast<double>(reader->n_frames())));
   MeasureRunResult result;
   std::unique_ptr<MeasureTables> tables;
-  ranks.together([&] { tables = open_tables(options, *reader, ranks, result); });
+  ranks.collectively([&] { tables = open_tables(options, *reader, ranks, result); });
   FrameChoice choice(options, n_frames);
   for (std::int64_t frame = 0; frame < n_frames; ++frame) {
     if (!choice.may_take(frame)) {
       continue;
     }
     Snapshot snapshot;
-    ranks.together([&] { snapshot = reader->snapshot(frame); });
+    ranks.collectively([&] { snapshot = reader->snapshot(frame); });
     if (choice.takes(snapshot)) {
       tables->add(snapshot);
       ++result.n_frames;
