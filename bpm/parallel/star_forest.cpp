@@ -34,9 +34,9 @@ const StarForestModule* load() {
       return entry;
     }
   }
-  throw std::runtime_error(fmt::format("a run on several ranks needs boba_petsc.so in {}{}",
-                                       (root / "lib/boba").string(),
-                                       reasons.empty() ? ", which is not there" : reasons));
+  throw std::runtime_error(fmt::format(
+      "a run on several ranks needs boba_petsc.so in {}{}", (root / "lib/boba").string(),
+      reasons.empty() ? ", which is not there; it is built where PETSc is (Debian: libpetsc-real-dev)" : reasons));
 }
 
 } // namespace
