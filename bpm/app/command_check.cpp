@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/command.h"
 #include "bpm/app/progress_display.h"
-#include "bpm/app/run_quantities.h"
 #include "bpm/app/scene_estimate.h"
 #include "bpm/packing/lane_layout.h"
+#include "bpm/packing/packing_numbers.h"
 #include "bpm/scene/scene_packing.h"
 #include "bpm/scene/scene_size.h"
+#include "bpm/scene/scene_stages.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -62,22 +64,21 @@ void print_memory(const Packing& packing, double bytes, std::int64_t nodes) {
              bytes * 1e-6, bytes / static_cast<double>(nodes), in_templates * 1e-6, available_memory() * 1e-9);
 }
 
-void print_stages(const Scene& scene, const std::vector<SceneStage>& stages, const StageEstimates& estimates,
-                  double node_steps_per_second, std::int64_t nodes) {
+void print_stages(const Scene& scene, const StageContext& context, double node_steps_per_second) {
+  const auto duration = [&](double steps) {
+    return readable_duration(steps * static_cast<double>(context.numbers.n_nodes) / node_steps_per_second);
+  };
   double total = 0.0;
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    const double steps = estimates.steps[i];
+  for (const SceneStage& stage : scene.stages) {
+    const StageLength length = stage.entry->estimate(context);
+    const double steps = std::ceil(length.time / scene.options.dt - 1e-6);
     total += steps;
-    fmt::print("stage.{} {}: {}{:.0f} steps, {:g} tau{}\n", stages[i].index, make_stage_driver(stages[i].stage)->name(),
-               estimates.exact[i] ? "" : "about ", steps, steps * scene.options.dt,
-               node_steps_per_second > 0.0
-                   ? ", " + readable_duration(steps * static_cast<double>(nodes) / node_steps_per_second)
-                   : "");
+    fmt::print("{}: {}{:.0f} steps, {:g} tau{}\n", stage.label(), length.is_exact ? "" : "about ", steps,
+               steps * scene.options.dt, node_steps_per_second > 0.0 ? ", " + duration(steps) : "");
   }
   if (node_steps_per_second > 0.0) {
     fmt::print("speed: {:.3g} M node-steps/s with {} threads, measured on the packing as it starts; in all about {}\n",
-               node_steps_per_second * 1e-6, scene.options.threads,
-               readable_duration(total * static_cast<double>(nodes) / node_steps_per_second));
+               node_steps_per_second * 1e-6, scene.options.threads, duration(total));
   }
 }
 
@@ -99,8 +100,9 @@ ExitCode check(const CheckArguments& a) {
   const PoissonTable table = PoissonTable::installed();
   const Packing packing = make_start(scene, table, [](const std::string& text) { fmt::print("{}\n", text); });
   const std::optional<double> modulus = effective_modulus(packing, scene.material, table);
-  const std::vector<SceneStage> stages = resolve_pressures(scene, modulus);
-  const PackingNumbers numbers(packing, scene.material, modulus);
+  const StageContext context = stage_context(scene, packing, modulus);
+  prepare_stages(scene, context); // says what would stop a run
+  const PackingNumbers& numbers = context.numbers;
   fmt::print("{}: {}\n{} nodes, {} grains, phi_reference {:.4g}\n", scene.path.string(), scene.title, numbers.n_nodes,
              packing.n_grains(), numbers.phi_reference(packing.box));
   print_templates(packing, scene);
@@ -111,8 +113,7 @@ ExitCode check(const CheckArguments& a) {
   }
   const Measurement measured = measure_speed(packing, scene);
   print_memory(packing, measured.bytes, numbers.n_nodes);
-  print_stages(scene, stages, estimate_stages(stages, packing, numbers, scene.options.dt),
-               measured.node_steps_per_second, numbers.n_nodes);
+  print_stages(scene, context, measured.node_steps_per_second);
   fmt::print("instruction set: {}\nskipped: {}\n", measured.instruction_set,
              fmt::join(skipped_work(packing, scene), "; "));
   return ExitCode::done;

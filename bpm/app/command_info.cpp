@@ -4,7 +4,7 @@
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/grain/template_cache.h"
 #include "bpm/scene/poisson_table.h"
-#include "bpm/scene/schema.h"
+#include "bpm/scene/scene_schema.h"
 
 #include <fmt/format.h>
 #include <thread>

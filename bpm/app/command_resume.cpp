@@ -63,7 +63,9 @@ ExitCode resume(const ResumeArguments& a, const Ranks& ranks) {
   }
   setup->scene.wall_time = a.wall_time ? a.wall_time : setup->scene.wall_time;
   setup->quiet = a.quiet;
-  ranks.collectively([&] { setup->stages = resolve_pressures(setup->scene, setup->modulus); });
+  ranks.collectively([&] {
+    setup->stages = prepare_stages(setup->scene, stage_context(setup->scene, setup->packing, setup->modulus));
+  });
   return run_scene(std::move(*setup), ranks);
 }
 

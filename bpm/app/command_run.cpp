@@ -86,7 +86,7 @@ ExitCode run(const RunArguments& a, const Ranks& ranks) {
     setup->scene.options.threads = std::min(setup->scene.options.threads, threads_of_a_rank(ranks));
   }
   ranks.collectively([&] {
-    setup->stages = resolve_pressures(setup->scene, setup->modulus);
+    setup->stages = prepare_stages(setup->scene, stage_context(setup->scene, setup->packing, setup->modulus));
     if (ranks.is_root()) {
       // Everything that can be wrong with the input has been found by now: from here on files are written.
       setup->folder.create(a.force);

@@ -4,11 +4,11 @@
 #include "bpm/app/checkpoint_observer.h"
 #include "bpm/app/progress_display.h"
 #include "bpm/app/run_log.h"
-#include "bpm/app/run_quantities.h"
 #include "bpm/app/run_writers.h"
 #include "bpm/app/stage_summary.h"
 #include "bpm/app/stop_request.h"
 #include "bpm/app/version.h"
+#include "bpm/packing/packing_numbers.h"
 
 #include <fmt/format.h>
 
@@ -126,19 +126,19 @@ private:
     if (!setup_.restart) {
       write_checkpoint(); // so that a run killed early can be resumed too
     }
-    for (const SceneStage& stage : setup_.stages) {
+    for (const PreparedStage& stage : setup_.stages) {
       if (stage.index < simulation_.stage_index()) {
         continue; // done before the checkpoint
       }
       summary_.begin(simulation_);
-      const std::unique_ptr<StageDriver> driver = make_stage_driver(stage.stage);
-      const RunOutcome outcome = simulation_.run(stage.index, *driver, observers, [this] { return stop_.pending(); });
+      const RunOutcome outcome =
+          simulation_.run(stage.index, *stage.driver, observers, [this] { return stop_.pending(); });
       progress_.finish();
       if (outcome == RunOutcome::stopped) {
         return stop();
       }
       write_checkpoint();
-      log_.say(summary_.text(simulation_, fmt::format("stage.{} {}", stage.index, driver->name())));
+      log_.say(summary_.text(simulation_, stage.label));
     }
     return finish();
   }

@@ -4,6 +4,7 @@
 #include "bpm/app/output_folder.h"
 #include "bpm/dynamics/simulation.h"
 #include "bpm/scene/scene.h"
+#include "bpm/scene/scene_stages.h"
 
 #include <optional>
 #include <vector>
@@ -15,8 +16,8 @@ struct RunSetup {
   Scene scene;
   OutputFolder folder;
   Packing packing;
-  std::vector<SceneStage> stages; ///< pressures resolved
-  std::optional<double> modulus;  ///< E / (2 - 2 nu^2) of the packing, k/d
+  std::vector<PreparedStage> stages;
+  std::optional<double> modulus; ///< E / (2 - 2 nu^2) of the packing, k/d
   bool quiet = false;
 
   /// Set when the run goes on from a checkpoint.

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <fstream>
 #include <unistd.h>
 
@@ -21,46 +20,7 @@ double resident_bytes() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-/// Height of the packing's only specimen along z (d).
-double specimen_height(const Packing& packing) {
-  double low = packing.position.front().z(), high = low;
-  for (const Vector3& x : packing.position) {
-    low = std::min(low, x.z());
-    high = std::max(high, x.z());
-  }
-  return high - low;
-}
-
-double compress_time(const CompressStage& stage, const Packing& packing, const PackingNumbers& numbers) {
-  const double p = numbers.normalised(stage.barostat.pressure);
-  const double phi = 0.6 + 0.27 * std::pow(std::max(p, 0.0) / 0.1, 2.0 / 3.0);
-  const double with_shell = std::pow(1.0 + 1.0 / numbers.grain_diameter, 3); // d/2 around a sphere
-  const double now = numbers.phi_reference(packing.box) * with_shell;
-  constexpr double settling = 1.2;
-  return std::isfinite(phi) && phi > now ? settling * std::log(phi / now) / 3.0 / stage.rate : 0.0;
-}
-
 } // namespace
-
-StageEstimates estimate_stages(const std::vector<SceneStage>& stages, const Packing& packing,
-                               const PackingNumbers& numbers, double dt) {
-  StageEstimates result;
-  for (const SceneStage& stage : stages) {
-    double time = 0.0;
-    if (const auto* compress = std::get_if<CompressStage>(&stage.stage)) {
-      time = compress_time(*compress, packing, numbers);
-    } else if (const auto* hold = std::get_if<HoldStage>(&stage.stage)) {
-      time = hold->time;
-    } else if (const auto* shear = std::get_if<ShearStage>(&stage.stage)) {
-      time = shear->strain / std::abs(shear->rate);
-    } else if (const auto* press = std::get_if<PressStage>(&stage.stage)) {
-      time = press->strain * specimen_height(packing) / (2.0 * std::abs(press->velocity));
-    }
-    result.steps.push_back(std::ceil(time / dt - 1e-6));
-    result.exact.push_back(!std::holds_alternative<CompressStage>(stage.stage));
-  }
-  return result;
-}
 
 Measurement measure_speed(const Packing& packing, const Scene& scene) {
   using Clock = std::chrono::steady_clock;
@@ -99,11 +59,8 @@ std::vector<std::string> skipped_work(const Packing& packing, const Scene& scene
   }
   bool held = false, moved = false;
   for (const SceneStage& stage : scene.stages) {
-    const auto* shear = std::get_if<ShearStage>(&stage.stage);
-    const auto* hold = std::get_if<HoldStage>(&stage.stage);
-    const bool compress = std::holds_alternative<CompressStage>(stage.stage);
-    held = held || compress || (shear != nullptr && shear->barostat) || (hold != nullptr && hold->barostat);
-    moved = moved || compress || shear != nullptr || (hold != nullptr && hold->barostat);
+    held = held || stage.entry->holds_pressure();
+    moved = moved || stage.entry->moves_cell();
   }
   skipped.emplace_back(held ? "stress tensor except on steps that are written (its trace otherwise)"
                             : "virial except on steps that are written");

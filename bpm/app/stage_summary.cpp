@@ -2,6 +2,7 @@
 #include "bpm/app/stage_summary.h"
 
 #include "bpm/app/progress_display.h"
+#include "bpm/dynamics/simulation.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/app/run_quantities.h"
 #include "bpm/dynamics/observer.h"
+#include "bpm/packing/packing_numbers.h"
 
 #include <chrono>
 #include <string>

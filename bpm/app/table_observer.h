@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/app/run_quantities.h"
 #include "bpm/app/schedule.h"
 #include "bpm/dynamics/observer.h"
 #include "bpm/io/table.h"
+#include "bpm/packing/packing_numbers.h"
 
 #include <chrono>
 #include <optional>

@@ -2,20 +2,16 @@
 #pragma once
 
 #include "bpm/dynamics/simulation.h"
-#include "bpm/grain/template_spec.h"
 #include "bpm/laws/material.h"
 #include "bpm/measure/measure_plan.h"
-#include "bpm/stages/compress.h"
-#include "bpm/stages/hold.h"
-#include "bpm/stages/press.h"
-#include "bpm/stages/shear.h"
+#include "bpm/stages/stage.h"
+#include "bpm/stages/start.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace boba {
@@ -45,52 +41,15 @@ struct SceneMeasure {
   OutputInterval every;
 };
 
-struct SceneTemplate {
-  std::string name;
-  TemplateSpec spec;
-};
-
-/// How the many-body coefficient of some grains is given.
-struct AlphaChoice {
-  std::optional<double> alpha;   ///< k d
-  std::optional<double> poisson; ///< looked up in the installed table
-};
-
-struct SceneSpecies {
-  std::string name;
-  int template_index = 0;
-  std::int64_t count = 0;
-  AlphaChoice material;
-};
-
-/// What the packing is at the start.
-struct InsertStart {
-  double packing_fraction = 0.4; ///< sum of reference volumes over cell volume
-  bool rotate = true;
-};
-struct SpecimenStart {
-  double margin = 5.0; ///< d
-};
-struct LammpsStart {
-  std::filesystem::path reference;
-  std::optional<std::filesystem::path> state;
-  int frame = -1;
-  AlphaChoice material;
-};
-struct TrajectoryStart {
-  std::filesystem::path file;
-  int frame = -1;
-  AlphaChoice material;
-};
-
-using Stage = std::variant<CompressStage, HoldStage, ShearStage, PressStage>;
-
-std::unique_ptr<StageDriver> make_stage_driver(const Stage& stage);
-
+/// A [[stage]] after the start.
 struct SceneStage {
-  int index = 0; ///< place in the scene's list, from 0
-  Stage stage;
-  std::optional<double> normalised_pressure; ///< replaces the barostat's pressure once E and nu are known
+  int index = 0;    ///< place in the scene's list, from 0
+  std::string kind; ///< its type: "shear"
+  std::string name; ///< its own, or ""
+  std::shared_ptr<const StageEntry> entry;
+
+  /// "stage.2 shear", and its own name when it has one.
+  std::string label() const;
 };
 
 /// A run as a user describes it, complete and checked.
@@ -109,7 +68,7 @@ struct Scene {
   Material material;
   std::vector<SceneTemplate> templates;
   std::vector<SceneSpecies> species;
-  std::variant<InsertStart, SpecimenStart, LammpsStart, TrajectoryStart> start;
+  std::shared_ptr<const StartEntry> start;
   std::vector<SceneStage> stages;
 };
 

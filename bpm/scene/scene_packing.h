@@ -12,9 +12,6 @@
 
 namespace boba {
 
-/// Told what takes time or deserves a word while a packing is made.
-using Narrator = std::function<void(const std::string&)>;
-
 /// alpha as given, or from the table. \throws InputError outside the table, and where the network is not stable.
 double resolve_alpha(const AlphaChoice& choice, const Material& material, const PoissonTable& table);
 
@@ -36,9 +33,5 @@ void check_time_step(const Scene& scene, const std::optional<PackingStep>& stabl
 /// E / (2 - 2 nu^2) of the grains (k/d), mean over all nodes; empty when an alpha lies outside the table.
 /// Source: docs/notation.md, "Derived numbers".
 std::optional<double> effective_modulus(const Packing& packing, const Material& material, const PoissonTable& table);
-
-/// The stages with every normalised pressure turned into a pressure: P = P~ E / (2 - 2 nu^2).
-/// \throws InputError when one is given and the modulus is unknown.
-std::vector<SceneStage> resolve_pressures(const Scene& scene, std::optional<double> modulus);
 
 } // namespace boba

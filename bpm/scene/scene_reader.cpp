@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/input_error.h"
 #include "bpm/scene/scene.h"
+#include "bpm/scene/scene_schema.h"
 #include "bpm/scene/scene_stages.h"
 #include "bpm/scene/scene_table.h"
+#include "bpm/stages/start_registry.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -10,24 +12,14 @@
 #include <set>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 namespace boba {
 
 namespace {
 
-AlphaChoice read_alpha(const SceneTable& table, bool needed) {
-  const AlphaChoice choice{table.maybe_real("alpha"), table.maybe_real("poisson")};
-  if (choice.alpha && choice.poisson) {
-    table.fail("poisson", "is given together with alpha; give one of them");
-  }
-  if (needed && !choice.alpha && !choice.poisson) {
-    table.fail("alpha", "is missing; give alpha (k d) or poisson");
-  }
-  return choice;
-}
-
 void read_run(const SceneTable& table, Scene& scene) {
-  scene.automatic_dt = table.is_word("dt");
+  scene.automatic_dt = table.is_text("dt");
   scene.options.dt = scene.automatic_dt ? scene.options.dt : table.real("dt", scene.options.dt);
   scene.options.skin = table.real("skin", scene.options.skin);
   scene.options.precision = table.text("precision", "double") == "mixed" ? Precision::mixed : Precision::full;
@@ -162,7 +154,7 @@ void read_templates(const SceneTables& tables, Scene& scene) {
   }
 }
 
-/// Hertz's law is for two whole spheres, not for nodes of a network; and it has no wall.
+/// Hertz's law is for two whole spheres, not for nodes of a network.
 void check_hertz(const SceneTables& tables, const Scene& scene) {
   if (scene.material.hertz_modulus == 0.0) {
     return;
@@ -209,65 +201,40 @@ void read_species(const SceneTables& tables, Scene& scene) {
   }
 }
 
-std::filesystem::path input_file(const SceneTable& table, const std::string& key, const Scene& scene, bool must_exist) {
-  std::filesystem::path path = scene.path.parent_path() / table.text(key, "");
-  std::error_code error;
-  if (must_exist && !std::filesystem::is_regular_file(path, error)) {
-    table.fail(key, fmt::format("there is no such file ({})", path.lexically_normal().string()));
-  }
-  return path;
-}
-
-void read_file_start(const SceneTables& tables, Scene& scene, bool must_exist) {
-  const SceneTable& table = tables.table("start");
-  for (const char* unused : {"template", "species"}) {
-    if (!tables.list(unused).empty()) {
-      tables.list(unused).front().fail("name", "has no use: the grains come from the files of [start]");
-    }
-  }
-  if (table.has("lammps_reference") == table.has("trajectory")) {
-    table.fail("lammps_reference", "or start.trajectory must be given, and not both");
-  }
-  const auto frame = static_cast<int>(table.integer("frame", -1));
-  const AlphaChoice material = read_alpha(table, false);
-  if (table.has("trajectory")) {
-    if (table.has("lammps_state")) {
-      table.fail("lammps_state", "has no meaning with a trajectory");
-    }
-    scene.start = TrajectoryStart{input_file(table, "trajectory", scene, must_exist), frame, material};
-    return;
-  }
-  LammpsStart start{input_file(table, "lammps_reference", scene, must_exist), std::nullopt, frame, material};
-  if (table.has("lammps_state")) {
-    start.state = input_file(table, "lammps_state", scene, must_exist);
-  }
-  scene.start = start;
-}
-
-void read_start(const SceneTables& tables, Scene& scene, bool must_exist) {
-  const std::vector<SceneTable>& stages = tables.list("stage");
+/// The table that says how the scene starts, and the kind of start that it chooses.
+std::pair<const SceneTable*, const StartKind*> chosen_start(const SceneTables& tables, const Scene& scene) {
   if (tables.present.at("start")) {
-    read_file_start(tables, scene, must_exist);
-    return;
+    for (const char* unused : {"template", "species"}) {
+      if (!tables.list(unused).empty()) {
+        tables.list(unused).front().fail("name", "has no use: the grains come from the files of [start]");
+      }
+    }
+    return {&tables.table("start"), &chosen_file_start(tables.table("start"))};
   }
-  const std::string first = stages.empty() ? "" : stages.front().kind();
-  if (first == "insert") {
-    scene.start = InsertStart{stages.front().real("packing_fraction", 0.4), stages.front().boolean("rotate", true)};
-  } else if (first == "specimen") {
-    scene.start = SpecimenStart{stages.front().real("margin", 5.0)};
-  } else {
-    throw InputError(fmt::format("{}: the first stage must be \"insert\" or \"specimen\", or the scene needs a [start] "
-                                 "that names files",
-                                 scene.path.string()));
+  const std::vector<SceneTable>& stages = tables.list("stage");
+  const StartKind* start = stages.empty() ? nullptr : find_placing_start(stages.front().kind());
+  if (start == nullptr) {
+    std::vector<std::string> types;
+    for (const StartKind& kind : start_kinds()) {
+      if (!kind.is_from_files()) {
+        types.push_back(kind.section.kind);
+      }
+    }
+    throw InputError(fmt::format("{}: the first stage must be \"{}\", or the scene needs a [start] that names files",
+                                 scene.path.string(), fmt::join(types, "\" or \"")));
   }
   if (scene.species.empty()) {
     throw InputError(fmt::format("{}: no [[species]]: a scene names its grains, for example "
                                  "[[species]] template = \"grain\", count = 64, alpha = 2.0",
                                  scene.path.string()));
   }
-  if (first == "specimen" && (scene.species.size() > 1 || scene.species.front().count > 1)) {
-    stages.front().fail("type", "takes one species with count = 1");
-  }
+  return {&stages.front(), start};
+}
+
+void read_start(const SceneTables& tables, Scene& scene, bool must_exist) {
+  const auto [table, kind] = chosen_start(tables, scene);
+  scene.start = kind->read(*table, {scene.path.parent_path(), must_exist});
+  scene.start->check(*table, {scene.templates, scene.species});
 }
 
 Scene read_tree(const std::string& text, const std::filesystem::path& path, const std::vector<std::string>& overrides,
@@ -280,7 +247,7 @@ Scene read_tree(const std::string& text, const std::filesystem::path& path, cons
   for (const std::string& assignment : overrides) {
     apply_override(tree, assignment);
   }
-  const SceneTables tables(std::move(tree), path.string());
+  const SceneTables tables(scene_schema(), std::move(tree), path.string());
   scene.title = tables.table("").text("title", path.stem().string());
   scene.seed = static_cast<std::uint64_t>(tables.table("").integer("seed", 1));
   read_run(tables.table("run"), scene);

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The scene format, as a table. Nothing else in the program lists its keys.
-#include "bpm/scene/schema.h"
+#include "bpm/scene/scene_schema.h"
+
+#include "bpm/stages/stage_registry.h"
+#include "bpm/stages/start_registry.h"
+
+#include <fmt/format.h>
+#include <list>
 
 namespace boba {
 
@@ -18,36 +24,6 @@ std::vector<SceneKey> interval_keys(const std::string& what, const std::string& 
   };
 }
 
-std::vector<SceneKey> joined(std::vector<SceneKey> first, const std::vector<SceneKey>& second) {
-  first.insert(first.end(), second.begin(), second.end());
-  return first;
-}
-
-std::vector<SceneKey> barostat_keys(const std::string& without) {
-  return {
-      above_key("pressure", "k/d", 0.0, 100.0, "", "pressure to hold" + without),
-      above_key(
-          "normalised_pressure", "", 0.0, 10.0, "",
-          "the same as P~ = P (2 - 2 nu^2) / E; E and nu from the installed table (mean of E / (2 - 2 nu^2) over all "
-          "nodes when species differ)"),
-      above_key("gain", "d/(k tau)", 0.0, 10.0, "",
-                "gain g of the barostat, d ln L / dt = g (P - P_target); default 1 / (3 K t_c), see docs/notation.md"),
-      above_key("rate_cap", "1/tau", 0.0, 0.1, "1e-3", "largest |d ln L / dt| of the barostat"),
-  };
-}
-
-std::vector<SceneKey> alpha_keys(bool needed) {
-  const std::string note = needed ? " (this or `poisson`)" : " (default: as stored with the trajectory, else 0)";
-  SceneKey alpha = above_key("alpha", "k d", -1.1, 100.0, "",
-                             "many-body coefficient" + note + "; at about -1.1 the network loses its rigidity");
-  SceneKey poisson =
-      real_key("poisson", "", -1.0, 0.5, "",
-               "Poisson's ratio; alpha follows by monotone interpolation in the installed table, without "
-               "extrapolation");
-  poisson.above_lowest = true;
-  return {alpha, poisson};
-}
-
 SceneSection section(std::string path, std::string doc, std::vector<SceneKey> keys) {
   return {std::move(path), "", false, std::move(doc), std::move(keys)};
 }
@@ -56,17 +32,13 @@ SceneSection repeated(std::string path, std::string doc, std::vector<SceneKey> k
   return {std::move(path), "", true, std::move(doc), std::move(keys)};
 }
 
-SceneSection stage(std::string kind, std::string doc, std::vector<SceneKey> keys) {
-  return {"stage", std::move(kind), true, std::move(doc), std::move(keys)};
-}
-
 std::vector<SceneSection> general_sections() {
   return {
       section("", "",
               {text_key("title", "", "what the scene is; copied into the results"),
                integer_key("seed", 0.0, largest_seed, "1", "placement and rotation of the grains")}),
       section("run", "How the run is computed.",
-              {or_word(above_key("dt", "tau", 0.0, 1.0, "0.1",
+              {or_text(above_key("dt", "tau", 0.0, 1.0, "0.1",
                                  "time step; \"auto\" takes 0.6 of the largest step at which the grains' bonds are "
                                  "stable (docs/stability.md). A step beyond that is refused"),
                        {"auto"}),
@@ -146,70 +118,83 @@ std::vector<SceneSection> material_sections() {
                        text_key("template", "the only one", "name of a [[template]]"),
                        required(integer_key("count", 1.0, most_nodes, "", "number of grains"))},
                       alpha_keys(true))),
-      section("start",
-              "Start from files instead of an `insert` stage: a LAMMPS data file of undeformed bonded grains (bond "
-              "rest lengths "
-              "from there) with the state of a dump file, or a frame of a trajectory that Boba wrote.",
-              joined({text_key("lammps_reference", "", "LAMMPS data file, also .gz"),
-                      text_key("lammps_state", "the reference itself",
-                               "LAMMPS dump (or data) file with the present state, also .gz"),
-                      text_key("trajectory", "", "trajectory.h5 of an earlier run"),
-                      integer_key("frame", -1e9, 1e9, "-1",
-                                  "frame of the trajectory or dump, counted from 0; negative from the end")},
-                     alpha_keys(false))),
+      start_section(),
   };
 }
 
+/// What every kind of start and stage says of itself.
 std::vector<SceneSection> stage_sections() {
-  return {
-      stage("insert",
-            "Places all grains at random, without overlap and at random angles, in a cubic periodic cell. First stage "
-            "only.",
-            {real_key("packing_fraction", "", 1e-9, 0.74, "0.4",
-                      "sum of the grains' reference volumes over the cell's volume"),
-             boolean_key("rotate", "true", "turn every grain at random")}),
-      stage("specimen",
-            "Places one grain as it is in the middle of an open cell (a `periodic_box`: in its own cell). First stage "
-            "only.",
-            {above_key("margin", "d", 0.0, 1e4, "5", "free space around the grain")}),
-      stage(
-          "compress",
-          "Isotropic compression at a constant rate up to the pressure, then a hold under the barostat until both "
-          "tolerances are met.",
-          joined(barostat_keys(" (this or `normalised_pressure`)"),
-                 {above_key("rate", "1/tau", 0.0, 0.1, "5e-4", "-d ln L / dt of the ramp"),
-                  above_key("pressure_tolerance", "", 0.0, 1.0, "1e-3", "|P / P_target - 1| at the end"),
-                  above_key("kinetic_tolerance", "", 0.0, 1e3, "1e-4", "kinetic over elastic energy at the end"),
-                  above_key("max_time", "tau", 0.0, 1e12, "1e6", "the stage fails when it has not settled by then")})),
-      stage("hold", "A fixed cell, or a held pressure, for a time.",
-            joined({required(above_key("time", "tau", 0.0, 1e12, "", "how long"))},
-                   barostat_keys("; without it the cell is fixed"))),
-      stage("shear", "Simple shear in x with gradient y.",
-            joined({required(real_key("rate", "1/tau", -0.1, 0.1, "", "shear rate, not 0; negative shears backwards")),
-                    required(above_key("strain", "", 0.0, 1e6, "", "strain to add")),
-                    choice_key("remap", {"positions", "velocities"}, "\"positions\"",
-                               "nodes follow the cell affinely, or only images across the cell carry its velocity")},
-                   barostat_keys("; without it the volume is constant"))),
-      stage("press", "Squeezes a specimen along z between two walls or two clamped ends.",
-            {required(above_key("strain", "", 0.0, 0.9, "",
-                                "displacement of both ends together over the specimen's height")),
-             choice_key("ends", {"walls", "clamps"}, "\"walls\"", "rigid walls, or end layers that move rigidly"),
-             real_key("velocity", "d/tau", -0.1, 0.1, "1e-3", "of each end, not 0; negative pulls (clamps only)"),
-             above_key("clamp_thickness", "d", 0.0, 1e3, "2", "nodes within this distance of an end are clamped")}),
-  };
+  std::vector<SceneSection> sections;
+  for (const StartKind& start : start_kinds()) {
+    if (!start.is_from_files()) {
+      sections.push_back(start.section);
+    }
+  }
+  for (const StageKind& stage : stage_kinds()) {
+    sections.push_back(stage.section);
+    sections.back().keys.push_back(
+        text_key("name", "", "its name in `--set stage.NAME.key=value` and in the log; no other stage has it"));
+  }
+  return sections;
 }
 
 } // namespace
 
 const std::vector<SceneSection>& scene_schema() {
-  static const std::vector<SceneSection> schema = [] {
-    std::vector<SceneSection> all = general_sections();
+  // A stage may be registered after the schema was first used: tables point into the older one.
+  static std::list<std::vector<SceneSection>> made;
+  static std::size_t n_kinds = 0;
+  if (made.empty() || n_kinds != stage_kinds().size() + start_kinds().size()) {
+    n_kinds = stage_kinds().size() + start_kinds().size();
+    std::vector<SceneSection>& all = made.emplace_back(general_sections());
     for (const std::vector<SceneSection>& part : {material_sections(), stage_sections()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
-    return all;
-  }();
-  return schema;
+  }
+  return made.back();
+}
+
+namespace {
+
+/// A vertical bar would end the cell of a Markdown table.
+std::string cell(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    result += c == '|' ? std::string("\\|") : std::string(1, c);
+  }
+  return result;
+}
+
+} // namespace
+
+std::string scene_reference() {
+  std::string text =
+      "# The scene format\n\n"
+      "This page is written by `boba info --scene-reference`; do not edit it.\n\n"
+      "A scene is a [TOML](https://toml.io) file. Units: node diameter d, node mass m, bond stiffness k are 1; time\n"
+      "tau = sqrt(m/k), pressure k/d, alpha k d (docs/notation.md). A key or a table that is not listed here, a value "
+      "of\n"
+      "another type or outside its range stops the program with exit code 2 before anything is written.\n\n"
+      "`--set PLACE=VALUE` on the command line replaces a value or adds one: `--set run.dt=0.05`,\n"
+      "`--set stage.1.rate=1e-4` (entries of `[[stage]]`, `[[template]]` and `[[species]]` count from 0) or\n"
+      "`--set stage.shear.rate=1e-4` (the only stage of that type, or the one with that `name`).\n\n"
+      "Paths of input files are relative to the scene's folder. Nothing is written outside the output folder.\n";
+  for (const SceneSection& section : scene_schema()) {
+    const std::string brackets =
+        section.repeated ? fmt::format("[[{}]]", section.path) : fmt::format("[{}]", section.path);
+    const std::string name = section.path.empty() ? "Top of the file" : "`" + brackets + "`";
+    text += fmt::format("\n## {}{}\n\n{}\n", name, section.kind.empty() ? "" : " `type = \"" + section.kind + "\"`",
+                        section.doc);
+    if (!section.keys.empty()) {
+      text += "\n| key | allowed | default | meaning |\n| --- | --- | --- | --- |\n";
+    }
+    for (const SceneKey& key : section.keys) {
+      const std::string fallback =
+          key.required ? "required" : (key.fallback.empty() ? "none" : "`" + key.fallback + "`");
+      text += fmt::format("| `{}` | {} | {} | {} |\n", key.name, key.allowed(), fallback, cell(key.doc));
+    }
+  }
+  return text;
 }
 
 } // namespace boba

@@ -4,13 +4,27 @@
 #include "bpm/scene/scene.h"
 #include "bpm/scene/scene_table.h"
 
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace boba {
 
-/// The stages that move nodes, in order; `insert` and `specimen` belong to the scene's start.
-/// \throws InputError for what no single key can be blamed for: a stage that the cell does not allow, two pressures,
-/// ...
+/// The stages after the start, in order. \throws InputError with the table that is wrong.
 std::vector<SceneStage> read_stages(const SceneTables& tables, const Scene& scene);
+
+/// A stage that can run.
+struct PreparedStage {
+  int index = 0;     ///< as in SceneStage
+  std::string label; ///< for the log
+  std::unique_ptr<StageDriver> driver;
+};
+
+/// What is known of the packing, for StageEntry. \param modulus E / (2 - 2 nu^2), k/d
+StageContext stage_context(const Scene& scene, const Packing& packing, std::optional<double> modulus);
+
+/// The drivers of all stages. \throws InputError when one needs E and nu and they are unknown.
+std::vector<PreparedStage> prepare_stages(const Scene& scene, const StageContext& context);
 
 } // namespace boba

@@ -75,10 +75,10 @@ std::optional<SceneValue> checked(const SceneKey& key, const TomlNode& node) {
 }
 
 /// Names of the tables directly inside the table `path` ("output" -> "table", ...).
-std::vector<std::string> inner_tables(const std::string& path) {
+std::vector<std::string> inner_tables(const SceneSchema& schema, const std::string& path) {
   std::set<std::string> names;
   const std::string prefix = path.empty() ? "" : path + ".";
-  for (const SceneSection& section : scene_schema()) {
+  for (const SceneSection& section : schema) {
     if (section.path.size() > prefix.size() && section.path.starts_with(prefix)) {
       names.insert(section.path.substr(prefix.size(), section.path.find('.', prefix.size()) - prefix.size()));
     }
@@ -97,10 +97,11 @@ const TomlNode* node_at(const TomlNode& root, const std::string& path) {
 }
 
 /// The section of a repeated table that its `type` selects.
-const SceneSection& section_of_entry(const std::string& path, const std::string& name, const TomlNode& entry) {
+const SceneSection& section_of_entry(const SceneSchema& schema, const std::string& path, const std::string& name,
+                                     const TomlNode& entry) {
   std::vector<std::string> kinds;
   const TomlNode* type = entry.find("type");
-  for (const SceneSection& section : scene_schema()) {
+  for (const SceneSection& section : schema) {
     if (section.path == path) {
       if (section.kind.empty() || (type != nullptr && type->kind == Kind::text && type->text == section.kind)) {
         return section;
@@ -119,7 +120,8 @@ const SceneSection& section_of_entry(const std::string& path, const std::string&
 
 } // namespace
 
-SceneTable::SceneTable(const SceneSection& section, std::string name, const TomlNode* node, const std::string& file)
+SceneTable::SceneTable(const SceneSchema& schema, const SceneSection& section, std::string name, const TomlNode* node,
+                       const std::string& file)
     : section_(&section), name_(std::move(name)), node_(node), file_(file) {
   if (node == nullptr) {
     return;
@@ -127,7 +129,7 @@ SceneTable::SceneTable(const SceneSection& section, std::string name, const Toml
   if (node->kind != Kind::table) {
     throw InputError(fmt::format("{}: {} = {}: must be a table, [{}]", node->place, name_, node->shown, section.path));
   }
-  std::vector<std::string> inner = section.repeated ? std::vector<std::string>() : inner_tables(section.path);
+  std::vector<std::string> inner = section.repeated ? std::vector<std::string>() : inner_tables(schema, section.path);
   for (const auto& [key_name, value] : node->members) {
     const SceneKey* key = section.find(key_name);
     const bool is_type = !section.kind.empty() && key_name == "type";
@@ -163,8 +165,8 @@ void SceneTable::fail(const std::string& key, const std::string& message) const 
   throw InputError(fmt::format("{}: {} {}", node_ == nullptr ? file_ : node_->place, dotted(name_, key), message));
 }
 
-SceneTables::SceneTables(TomlNode tree, const std::string& file) : root(std::move(tree)) {
-  for (const SceneSection& section : scene_schema()) {
+SceneTables::SceneTables(const SceneSchema& schema, TomlNode tree, const std::string& file) : root(std::move(tree)) {
+  for (const SceneSection& section : schema) {
     if (tables.contains(section.path)) {
       continue; // another `type` of a repeated table, handled with the first
     }
@@ -172,7 +174,7 @@ SceneTables::SceneTables(TomlNode tree, const std::string& file) : root(std::mov
     const TomlNode* node = section.path.empty() ? &root : node_at(root, section.path);
     present[section.path] = node != nullptr;
     if (!section.repeated) {
-      made.emplace_back(section, section.path, node, file);
+      made.emplace_back(schema, section, section.path, node, file);
       continue;
     }
     if (node != nullptr && node->kind != Kind::array) {
@@ -185,7 +187,8 @@ SceneTables::SceneTables(TomlNode tree, const std::string& file) : root(std::mov
         throw InputError(fmt::format("{}: {} = {}: must be a table, [[{}]]", node->items[i].place, name,
                                      node->items[i].shown, section.path));
       }
-      made.emplace_back(section_of_entry(section.path, name, node->items[i]), name, &node->items[i], file);
+      made.emplace_back(schema, section_of_entry(schema, section.path, name, node->items[i]), name, &node->items[i],
+                        file);
     }
   }
 }

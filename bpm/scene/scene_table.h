@@ -11,16 +11,17 @@
 
 namespace boba {
 
-/// One table of a scene whose keys, types and ranges have been checked against the schema.
+/// One table of a scene whose keys, types and ranges have been checked against the schema, which must outlive it.
 class SceneTable {
 public:
   /// `name` is how messages call the table: "run", "stage.1". An absent table (node == nullptr) has only defaults.
   /// \throws InputError at the first key that is unknown, of a wrong type, out of range or missing.
-  SceneTable(const SceneSection& section, std::string name, const TomlNode* node, const std::string& file);
+  SceneTable(const SceneSchema& schema, const SceneSection& section, std::string name, const TomlNode* node,
+             const std::string& file);
 
   bool has(const std::string& key) const { return values_.contains(key); }
-  /// True when a word stands where a number may, see or_word.
-  bool is_word(const std::string& key) const {
+  /// Does a text stand where a number may? See or_text.
+  bool is_text(const std::string& key) const {
     const auto at = values_.find(key);
     return at != values_.end() && std::holds_alternative<std::string>(at->second);
   }
@@ -62,7 +63,7 @@ struct SceneTables {
   std::map<std::string, std::vector<SceneTable>> tables; ///< by path; one entry for a table that is not repeated
   std::map<std::string, bool> present;
 
-  explicit SceneTables(TomlNode tree, const std::string& file);
+  SceneTables(const SceneSchema& schema, TomlNode tree, const std::string& file);
   SceneTables(const SceneTables&) = delete;
   SceneTables& operator=(const SceneTables&) = delete;
   const SceneTable& table(const std::string& path) const { return tables.at(path).front(); }

@@ -99,13 +99,18 @@ SceneKey vector_key(std::string name, std::string unit, double lowest, double hi
   return key;
 }
 
+std::vector<SceneKey> joined(std::vector<SceneKey> first, const std::vector<SceneKey>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
 SceneKey required(SceneKey key) {
   key.required = true;
   return key;
 }
 
-SceneKey or_word(SceneKey key, std::vector<std::string> words) {
-  key.choices = std::move(words);
+SceneKey or_text(SceneKey key, std::vector<std::string> texts) {
+  key.choices = std::move(texts);
   return key;
 }
 
@@ -142,49 +147,6 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
     }
   }
   return nearest;
-}
-
-namespace {
-
-/// A vertical bar would end the cell of a Markdown table.
-std::string cell(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    result += c == '|' ? std::string("\\|") : std::string(1, c);
-  }
-  return result;
-}
-
-} // namespace
-
-std::string scene_reference() {
-  std::string text =
-      "# The scene format\n\n"
-      "This page is written by `boba info --scene-reference`; do not edit it.\n\n"
-      "A scene is a [TOML](https://toml.io) file. Units: node diameter d, node mass m, bond stiffness k are 1; time\n"
-      "tau = sqrt(m/k), pressure k/d, alpha k d (docs/notation.md). A key or a table that is not listed here, a value "
-      "of\n"
-      "another type or outside its range stops the program with exit code 2 before anything is written.\n\n"
-      "`--set PLACE=VALUE` on the command line replaces a value or adds one: `--set run.dt=0.05`,\n"
-      "`--set stage.1.rate=1e-4` (entries of `[[stage]]`, `[[template]]` and `[[species]]` count from 0) or\n"
-      "`--set stage.shear.rate=1e-4` (the only stage of that type).\n\n"
-      "Paths of input files are relative to the scene's folder. Nothing is written outside the output folder.\n";
-  for (const SceneSection& section : scene_schema()) {
-    const std::string brackets =
-        section.repeated ? fmt::format("[[{}]]", section.path) : fmt::format("[{}]", section.path);
-    const std::string name = section.path.empty() ? "Top of the file" : "`" + brackets + "`";
-    text += fmt::format("\n## {}{}\n\n{}\n", name, section.kind.empty() ? "" : " `type = \"" + section.kind + "\"`",
-                        section.doc);
-    if (!section.keys.empty()) {
-      text += "\n| key | allowed | default | meaning |\n| --- | --- | --- | --- |\n";
-    }
-    for (const SceneKey& key : section.keys) {
-      const std::string fallback =
-          key.required ? "required" : (key.fallback.empty() ? "none" : "`" + key.fallback + "`");
-      text += fmt::format("| `{}` | {} | {} | {} |\n", key.name, key.allowed(), fallback, cell(key.doc));
-    }
-  }
-  return text;
 }
 
 } // namespace boba

@@ -26,7 +26,7 @@ struct SceneKey {
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
   bool above_lowest = false;        ///< the lowest value itself is not allowed
-  std::vector<std::string> choices; ///< of a choice; of a number: words that may stand in its place
+  std::vector<std::string> choices; ///< of a choice; of a number: texts that may stand in its place
 
   /// "a number above 0 and at most 1 (tau)": the end of every message about this key.
   std::string allowed() const;
@@ -45,8 +45,10 @@ SceneKey choice_key(std::string name, std::vector<std::string> choices, std::str
 SceneKey vector_key(std::string name, std::string unit, double lowest, double highest, std::string fallback,
                     std::string doc);
 SceneKey required(SceneKey key);
-/// The same, and these words are allowed in place of a number.
-SceneKey or_word(SceneKey key, std::vector<std::string> words);
+/// The keys of both, in order.
+std::vector<SceneKey> joined(std::vector<SceneKey> first, const std::vector<SceneKey>& second);
+/// The same, and one of these texts is allowed in place of a number.
+SceneKey or_text(SceneKey key, std::vector<std::string> texts);
 
 /// The keys of one table of a scene.
 struct SceneSection {
@@ -59,11 +61,8 @@ struct SceneSection {
   const SceneKey* find(const std::string& name) const;
 };
 
-/// Every table a scene may have: the format's only definition. The reader and docs/scene.md come from it.
-const std::vector<SceneSection>& scene_schema();
-
-/// docs/scene.md.
-std::string scene_reference();
+/// All tables of a format.
+using SceneSchema = std::vector<SceneSection>;
 
 /// The word of `known` that is nearest to `word` by edit distance, or "" when none is near.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);

@@ -96,7 +96,7 @@ std::vector<std::string> split_path(const std::string& path) {
   return parts;
 }
 
-/// The entry of an array that a part of an override's path names: its number from 0, or its `type`.
+/// The entry of an array that a part of an override's path names: its number from 0, its `name` or its `type`.
 TomlNode& array_entry(TomlNode& array, const std::string& name, const std::string& part, const std::string& place) {
   std::size_t index = 0;
   const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
@@ -106,10 +106,11 @@ TomlNode& array_entry(TomlNode& array, const std::string& name, const std::strin
   TomlNode* found = nullptr;
   for (TomlNode& item : array.items) {
     const TomlNode* type = item.find("type");
-    if (type != nullptr && type->text == part) {
+    const TomlNode* own_name = item.find("name");
+    if ((type != nullptr && type->text == part) || (own_name != nullptr && own_name->text == part)) {
       if (found != nullptr) {
-        throw InputError(
-            fmt::format("{}: more than one {} has the type {}; use its number, counted from 0", place, name, part));
+        throw InputError(fmt::format("{}: more than one {} has the type or the name {}; use its number, counted from 0",
+                                     place, name, part));
       }
       found = &item;
     }

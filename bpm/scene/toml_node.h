@@ -40,9 +40,10 @@ std::string read_text_file(const std::filesystem::path& path, std::uintmax_t lar
 
 /// Puts a value of the command line, "stage.1.rate=1e-4", into the tree: later text wins over the file.
 ///
-/// Tables on the way are made when they are missing. Entries of an array are counted from 0; an entry of `stage` may
-/// also be named by its `type` when only one has it ("stage.shear.rate"). A value that is no TOML is taken as text.
-/// \throws InputError when the text has no "=" or the place does not exist; the message names the override.
+/// Tables on the way are made when they are missing. Entries of an array are counted from 0; an entry may
+/// also be named by its `name` or its `type` when only one has it ("stage.shear.rate"). A value that is no TOML is
+/// taken as text. \throws InputError when the text has no "=" or the place does not exist; the message names the
+/// override.
 void apply_override(TomlNode& root, const std::string& assignment);
 
 } // namespace boba

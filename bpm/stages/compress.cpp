@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/stages/compress.h"
 
+#include "bpm/scene/schema.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -66,9 +68,7 @@ CellRates CompressDriver::update(Stepper& stepper) {
 }
 
 StageProgress CompressDriver::progress(const Stepper& stepper) const {
-  StageProgress progress;
-  progress.phase = phase_ == Phase::ramp ? "ramp" : "settle";
-  progress.driven = "P";
+  StageProgress progress{.phase = phase_ == Phase::ramp ? "ramp" : "settle", .driven = "P"};
   progress.value = stepper.pressure();
   progress.target = stage_.barostat.pressure;
   const double reached = std::clamp(stepper.pressure() / stage_.barostat.pressure, 0.0, 1.0);
@@ -86,6 +86,51 @@ void CompressDriver::restore(const SavedState& saved) {
   start_time_ = numbers.at(1);
   gain_ = numbers.at(2);
   halfway_ = {numbers.at(3), numbers.at(4)};
+}
+
+SceneSection CompressEntry::section() {
+  return {"stage", "compress", true,
+          "Isotropic compression at a constant rate up to the pressure, then a hold under the barostat until both "
+          "tolerances are met.",
+          joined(pressure_keys(" (this or `normalised_pressure`)"),
+                 {above_key("rate", "1/tau", 0.0, 0.1, "5e-4", "-d ln L / dt of the ramp"),
+                  above_key("pressure_tolerance", "", 0.0, 1.0, "1e-3", "|P / P_target - 1| at the end"),
+                  above_key("kinetic_tolerance", "", 0.0, 1e3, "1e-4", "kinetic over elastic energy at the end"),
+                  above_key("max_time", "tau", 0.0, 1e12, "1e6", "the stage fails when it has not settled by then")})};
+}
+
+CompressEntry::CompressEntry(const SceneTable& table) : pressure_(table) {
+  if (!pressure_.is_given()) {
+    table.fail("pressure", "or normalised_pressure must be given");
+  }
+  parameters_.rate = table.real("rate", parameters_.rate);
+  parameters_.pressure_tolerance = table.real("pressure_tolerance", parameters_.pressure_tolerance);
+  parameters_.kinetic_tolerance = table.real("kinetic_tolerance", parameters_.kinetic_tolerance);
+  parameters_.max_time = table.real("max_time", parameters_.max_time);
+}
+
+void CompressEntry::check(const SceneTable& table, const StageSurroundings& surroundings) const {
+  require_periodic_cell(table, surroundings);
+}
+
+// Packings of spheres end at phi = 0.6 + 0.27 (P~ / 0.1)^(2/3), with phi counted to d/2 outside the nodes; settling
+// takes about a fifth more.
+// Source: Clemmer, Hackney & Grest: phi_c about 0.6, P~ ~ (phi - phi_c)^(3/2), phi about 0.87 at P~ = 0.1.
+StageLength CompressEntry::estimate(const StageContext& context) const {
+  const PackingNumbers& numbers = context.numbers;
+  const double p = numbers.normalised(pressure_.barostat(context)->pressure);
+  const double phi = 0.6 + 0.27 * std::pow(std::max(p, 0.0) / 0.1, 2.0 / 3.0);
+  const double with_shell = std::pow(1.0 + 1.0 / numbers.grain_diameter, 3); // d/2 around a sphere
+  const double now = numbers.phi_reference(context.packing.box) * with_shell;
+  constexpr double settling = 1.2;
+  const double time = std::isfinite(phi) && phi > now ? settling * std::log(phi / now) / 3.0 / parameters_.rate : 0.0;
+  return {.time = time, .is_exact = false};
+}
+
+std::unique_ptr<StageDriver> CompressEntry::make_driver(const StageContext& context) const {
+  CompressStage stage = parameters_;
+  stage.barostat = *pressure_.barostat(context);
+  return std::make_unique<CompressDriver>(stage);
 }
 
 } // namespace boba

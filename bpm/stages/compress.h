@@ -3,6 +3,7 @@
 
 #include "bpm/dynamics/barostat.h"
 #include "bpm/dynamics/stage_driver.h"
+#include "bpm/stages/pressure_keys.h"
 
 namespace boba {
 
@@ -50,6 +51,27 @@ private:
   double start_time_ = 0.0;
   double gain_ = 0.0;
   Halfway halfway_;
+};
+
+/// A [[stage]] with `type = "compress"`.
+class CompressEntry : public StageEntry {
+public:
+  static SceneSection section();
+  explicit CompressEntry(const SceneTable& table);
+
+  void check(const SceneTable& table, const StageSurroundings& surroundings) const override;
+  bool moves_cell() const override { return true; }
+  bool holds_pressure() const override { return true; }
+  bool has_ends() const override { return false; }
+  StageLength estimate(const StageContext& context) const override;
+  std::unique_ptr<StageDriver> make_driver(const StageContext& context) const override;
+  /// As the scene gives them, but for the pressure.
+  const CompressStage& parameters() const { return parameters_; }
+  const ScenePressure& pressure() const { return pressure_; }
+
+private:
+  CompressStage parameters_;
+  ScenePressure pressure_;
 };
 
 } // namespace boba

@@ -3,6 +3,7 @@
 
 #include "bpm/dynamics/stage_driver.h"
 #include "bpm/stages/held_pressure.h"
+#include "bpm/stages/pressure_keys.h"
 #include "bpm/stages/timed_steps.h"
 
 namespace boba {
@@ -34,6 +35,27 @@ private:
   HoldStage stage_;
   TimedSteps steps_;
   HeldPressure pressure_;
+};
+
+/// A [[stage]] with `type = "hold"`.
+class HoldEntry : public StageEntry {
+public:
+  static SceneSection section();
+  explicit HoldEntry(const SceneTable& table);
+
+  void check(const SceneTable& table, const StageSurroundings& surroundings) const override;
+  bool moves_cell() const override { return pressure_.is_given(); }
+  bool holds_pressure() const override { return pressure_.is_given(); }
+  bool has_ends() const override { return false; }
+  StageLength estimate(const StageContext& context) const override;
+  std::unique_ptr<StageDriver> make_driver(const StageContext& context) const override;
+  /// As the scene gives them, but for the pressure.
+  const HoldStage& parameters() const { return parameters_; }
+  const ScenePressure& pressure() const { return pressure_; }
+
+private:
+  HoldStage parameters_;
+  ScenePressure pressure_;
 };
 
 } // namespace boba

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/stages/press.h"
 
+#include "bpm/scene/schema.h"
+
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <stdexcept>
@@ -78,6 +81,55 @@ void PressDriver::restore(const SavedState& saved) {
   height_ = saved.real.at("driver").at(0);
   dt_ = saved.real.at("driver").at(1);
   steps_.restore(saved);
+}
+
+SceneSection PressEntry::section() {
+  return {
+      "stage",
+      "press",
+      true,
+      "Squeezes a specimen along z between two walls or two clamped ends.",
+      {required(above_key("strain", "", 0.0, 0.9, "", "displacement of both ends together over the specimen's height")),
+       choice_key("ends", {"walls", "clamps"}, "\"walls\"", "rigid walls, or end layers that move rigidly"),
+       real_key("velocity", "d/tau", -0.1, 0.1, "1e-3", "of each end, not 0; negative pulls (clamps only)"),
+       above_key("clamp_thickness", "d", 0.0, 1e3, "2", "nodes within this distance of an end are clamped")}};
+}
+
+PressEntry::PressEntry(const SceneTable& table) {
+  parameters_.strain = table.real("strain", 0.0);
+  parameters_.ends = table.text("ends", "walls") == "walls" ? PressStage::Ends::walls : PressStage::Ends::clamps;
+  parameters_.velocity = table.real("velocity", parameters_.velocity);
+  parameters_.clamp_thickness = table.real("clamp_thickness", parameters_.clamp_thickness);
+  if (parameters_.velocity == 0.0) {
+    table.fail("velocity", "must not be 0");
+  }
+  if (parameters_.ends == PressStage::Ends::walls && parameters_.velocity < 0.0) {
+    table.fail("velocity", "must be positive: walls can only push (ends = \"clamps\" can pull)");
+  }
+  if (parameters_.ends == PressStage::Ends::walls && table.has("clamp_thickness")) {
+    table.fail("clamp_thickness", "needs ends = \"clamps\"");
+  }
+}
+
+void PressEntry::check(const SceneTable& table, const StageSurroundings& surroundings) const {
+  require_open_cell(table, surroundings);
+  if (surroundings.material.hertz_modulus > 0.0) {
+    table.fail("type", "has no meaning with material.hertz_modulus: Hertz's law is for contacts of two spheres, not "
+                       "for walls and clamps");
+  }
+  // A specimen has a height of at least 2 d. That of a higher one is known when the stage begins.
+  require_countable_steps(table, "velocity", parameters_.strain / std::abs(parameters_.velocity), surroundings.dt);
+}
+
+StageLength PressEntry::estimate(const StageContext& context) const {
+  const std::vector<Vector3>& x = context.packing.position;
+  const auto [low, high] =
+      std::minmax_element(x.begin(), x.end(), [](const Vector3& a, const Vector3& b) { return a.z() < b.z(); });
+  return {.time = parameters_.strain * (high->z() - low->z()) / (2.0 * std::abs(parameters_.velocity))};
+}
+
+std::unique_ptr<StageDriver> PressEntry::make_driver(const StageContext&) const {
+  return std::make_unique<PressDriver>(parameters_);
 }
 
 } // namespace boba

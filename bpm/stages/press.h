@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/dynamics/stage_driver.h"
+#include "bpm/stages/stage.h"
 #include "bpm/stages/timed_steps.h"
 
 namespace boba {
@@ -43,6 +44,25 @@ private:
   double height_ = 0.0; ///< between the ends at the start, d
   double dt_ = 0.0;
   TimedSteps steps_;
+};
+
+/// A [[stage]] with `type = "press"`.
+class PressEntry : public StageEntry {
+public:
+  static SceneSection section();
+  explicit PressEntry(const SceneTable& table);
+
+  void check(const SceneTable& table, const StageSurroundings& surroundings) const override;
+  bool moves_cell() const override { return false; }
+  bool holds_pressure() const override { return false; }
+  bool has_ends() const override { return true; }
+  StageLength estimate(const StageContext& context) const override;
+  std::unique_ptr<StageDriver> make_driver(const StageContext& context) const override;
+  /// As the scene gives them.
+  const PressStage& parameters() const { return parameters_; }
+
+private:
+  PressStage parameters_;
 };
 
 } // namespace boba

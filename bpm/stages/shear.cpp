@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/stages/shear.h"
 
+#include "bpm/scene/schema.h"
+
 #include <cmath>
 
 namespace boba {
@@ -41,6 +43,39 @@ void ShearDriver::save(SavedState& saved) const {
 void ShearDriver::restore(const SavedState& saved) {
   steps_.restore(saved);
   pressure_.restore(saved);
+}
+
+SceneSection ShearEntry::section() {
+  return {"stage", "shear", true, "Simple shear in x with gradient y.",
+          joined({required(real_key("rate", "1/tau", -0.1, 0.1, "", "shear rate, not 0; negative shears backwards")),
+                  required(above_key("strain", "", 0.0, 1e6, "", "strain to add")),
+                  choice_key("remap", {"positions", "velocities"}, "\"positions\"",
+                             "nodes follow the cell affinely, or only images across the cell carry its velocity")},
+                 pressure_keys("; without it the volume is constant"))};
+}
+
+ShearEntry::ShearEntry(const SceneTable& table) : pressure_(table) {
+  parameters_.rate = table.real("rate", 0.0);
+  if (parameters_.rate == 0.0) {
+    table.fail("rate", "must not be 0");
+  }
+  parameters_.strain = table.real("strain", 0.0);
+  parameters_.remap = table.text("remap", "positions") == "positions" ? Remap::positions : Remap::velocities;
+}
+
+void ShearEntry::check(const SceneTable& table, const StageSurroundings& surroundings) const {
+  require_periodic_cell(table, surroundings);
+  require_countable_steps(table, "rate", parameters_.strain / std::abs(parameters_.rate), surroundings.dt);
+}
+
+StageLength ShearEntry::estimate(const StageContext&) const {
+  return {.time = parameters_.strain / std::abs(parameters_.rate)};
+}
+
+std::unique_ptr<StageDriver> ShearEntry::make_driver(const StageContext& context) const {
+  ShearStage stage = parameters_;
+  stage.barostat = pressure_.barostat(context);
+  return std::make_unique<ShearDriver>(stage);
 }
 
 } // namespace boba

@@ -7,7 +7,7 @@
 #include "bpm/measure/blocking.h"
 #include "bpm/parallel/message_passing.h"
 #include "bpm/scene/scene.h"
-#include "bpm/scene/trajectory_start.h"
+#include "bpm/io/trajectory_packing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -105,8 +105,8 @@ frame_stress(const MeasureRunOptions& options, const std::optional<Scene>& scene
   if (!scene) {
     return {nullptr, "the trajectory names no scene to take the material from"};
   }
-  const auto presses = [](const SceneStage& stage) { return std::holds_alternative<PressStage>(stage.stage); };
-  if (std::any_of(scene->stages.begin(), scene->stages.end(), presses)) {
+  const auto has_ends = [](const SceneStage& stage) { return stage.entry->has_ends(); };
+  if (std::any_of(scene->stages.begin(), scene->stages.end(), has_ends)) {
     return {nullptr, "the run has walls or clamps, which frames do not hold"};
   }
   try {

@@ -2,6 +2,7 @@
 // What a scene may say and nobody would: the ends of the range of every number, and next to nothing where 0 is
 // excluded. The program answers, in time and in a bounded memory, or stops at its wall-time limit. One value in four is
 // tried; all of them when BOBA_ALLOWED=all.
+#include "bpm/scene/scene_schema.h"
 #include "tests/robustness/app/small_scene.h"
 #include "tests/robustness/scene/trial_scene.h"
 

@@ -3,7 +3,7 @@
 // may hold; whatever lies outside is refused with key, line and range.
 #include "bpm/io/input_error.h"
 #include "bpm/scene/scene.h"
-#include "bpm/scene/schema.h"
+#include "bpm/scene/scene_schema.h"
 #include "tests/robustness/scene/trial_scene.h"
 
 #include <algorithm>

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/input_error.h"
 #include "bpm/scene/scene.h"
-#include "bpm/scene/schema.h"
+#include "bpm/scene/scene_schema.h"
+#include "bpm/scene/scene_stages.h"
+#include "bpm/stages/compress.h"
+#include "bpm/stages/insert.h"
+#include "bpm/stages/shear.h"
+#include "bpm/stages/specimen.h"
 
 #include <fstream>
 #include <gtest/gtest.h>
@@ -83,22 +88,30 @@ TEST(SceneReader, ReadsEveryPart) {
   ASSERT_EQ(scene.species.size(), 2U);
   EXPECT_EQ(scene.species[1].template_index, 1);
   EXPECT_DOUBLE_EQ(*scene.species[1].material.poisson, -0.25);
-  EXPECT_DOUBLE_EQ(std::get<InsertStart>(scene.start).packing_fraction, 0.3);
+  EXPECT_DOUBLE_EQ(dynamic_cast<const InsertStart&>(*scene.start).packing_fraction(), 0.3);
   ASSERT_EQ(scene.stages.size(), 2U);
   EXPECT_EQ(scene.stages[0].index, 1);
-  EXPECT_DOUBLE_EQ(*scene.stages[0].normalised_pressure, 0.1);
-  const auto& shear = std::get<ShearStage>(scene.stages[1].stage);
+  const Packing packing;
+  StageContext context = stage_context(scene, packing, 3.0);
+  const auto& compress = dynamic_cast<const CompressEntry&>(*scene.stages[0].entry);
+  EXPECT_DOUBLE_EQ(compress.pressure().barostat(context)->pressure, 0.1 * 3.0);
+  context.numbers.modulus.reset();
+  EXPECT_THROW(prepare_stages(scene, context), InputError);
+  const auto& entry = dynamic_cast<const ShearEntry&>(*scene.stages[1].entry);
+  const ShearStage& shear = entry.parameters();
   EXPECT_DOUBLE_EQ(shear.rate, -1e-3);
   EXPECT_EQ(shear.remap, Remap::velocities);
-  EXPECT_DOUBLE_EQ(shear.barostat->pressure, 0.2);
-  EXPECT_DOUBLE_EQ(*shear.barostat->gain, 0.02);
+  const std::optional<Barostat> barostat = entry.pressure().barostat(context);
+  ASSERT_TRUE(barostat);
+  EXPECT_DOUBLE_EQ(barostat->pressure, 0.2);
+  EXPECT_DOUBLE_EQ(*barostat->gain, 0.02);
 }
 
 TEST(SceneReader, OverridesReplaceAndAdd) {
   const Scene scene = read(shear_scene, {"stage.1.rate=1e-4", "stage.shear.strain=3", "run.skin=0.5",
                                          "title=plain words", "output.dump.every_time=10", "species.0.count=5"});
-  EXPECT_DOUBLE_EQ(std::get<CompressStage>(scene.stages[0].stage).rate, 1e-4);
-  EXPECT_DOUBLE_EQ(std::get<ShearStage>(scene.stages[1].stage).strain, 3.0);
+  EXPECT_DOUBLE_EQ(dynamic_cast<const CompressEntry&>(*scene.stages[0].entry).parameters().rate, 1e-4);
+  EXPECT_DOUBLE_EQ(dynamic_cast<const ShearEntry&>(*scene.stages[1].entry).parameters().strain, 3.0);
   EXPECT_DOUBLE_EQ(scene.options.skin, 0.5);
   EXPECT_EQ(scene.title, "plain words");
   EXPECT_DOUBLE_EQ(*scene.output.dump->every.time, 10.0);
@@ -230,7 +243,7 @@ TEST(SceneReader, SpecimenNeedsOneGrainAndAnOpenCell) {
       "[[template]]\nname = \"rod\"\nshape = \"cylinder\"\n[[species]]\ncount = 1\nalpha = 0\n"
       "[[stage]]\ntype = \"specimen\"\n[[stage]]\ntype = \"press\"\nstrain = 0.05\nends = \"clamps\"\n"
       "velocity = -1e-3\n";
-  EXPECT_TRUE(std::holds_alternative<SpecimenStart>(read(scene).start));
+  EXPECT_NE(dynamic_cast<const SpecimenStart*>(read(scene).start.get()), nullptr);
   EXPECT_NE(message_of(scene, {"species.0.count=2"}).find("count = 1"), std::string::npos);
   EXPECT_NE(message_of(scene, {"template.0.shape=periodic_box"}).find("open cell"), std::string::npos);
   EXPECT_NE(message_of(scene, {"stage.1.ends=walls"}).find("only push"), std::string::npos);

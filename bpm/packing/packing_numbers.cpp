@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/app/run_quantities.h"
+#include "bpm/packing/packing_numbers.h"
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/scene/trajectory_start.h"
+#include "bpm/io/trajectory_packing.h"
 
 #include "bpm/io/input_error.h"
 #include "bpm/io/trajectory.h"

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/dynamics/simulation.h"
+#include "bpm/laws/material.h"
+#include "bpm/packing/packing.h"
 
+#include <cstdint>
 #include <optional>
 
 namespace boba {

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/stages/start.h"
+
+namespace boba {
+
+/// A first [[stage]] with `type = "insert"`: all grains at random, without overlap, in a cubic periodic cell.
+class InsertStart : public StartEntry {
+public:
+  static SceneSection section();
+  InsertStart(const SceneTable& table, const StartFiles& files);
+
+  void check(const SceneTable& table, const SceneGrains& grains) const override;
+  bool cell_is_open(const SceneGrains&) const override { return false; }
+  Packing make(const StartContext& context) const override;
+  double packing_fraction() const { return packing_fraction_; }
+
+private:
+  double packing_fraction_; ///< sum of reference volumes over cell volume
+  bool rotate_;
+};
+
+} // namespace boba

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/stages/start.h"
+
+#include "bpm/scene/schema.h"
+
+#include <fmt/format.h>
+
+namespace boba {
+
+AlphaChoice read_alpha(const SceneTable& table, bool is_needed) {
+  const AlphaChoice choice{table.maybe_real("alpha"), table.maybe_real("poisson")};
+  if (choice.alpha && choice.poisson) {
+    table.fail("poisson", "is given together with alpha; give one of them");
+  }
+  if (is_needed && !choice.alpha && !choice.poisson) {
+    table.fail("alpha", "is missing; give alpha (k d) or poisson");
+  }
+  return choice;
+}
+
+std::vector<SceneKey> alpha_keys(bool is_needed) {
+  const std::string note = is_needed ? " (this or `poisson`)" : " (default: as stored with the trajectory, else 0)";
+  SceneKey alpha = above_key("alpha", "k d", -1.1, 100.0, "",
+                             "many-body coefficient" + note + "; at about -1.1 the network loses its rigidity");
+  SceneKey poisson =
+      real_key("poisson", "", -1.0, 0.5, "",
+               "Poisson's ratio; alpha follows by monotone interpolation in the installed table, without "
+               "extrapolation");
+  poisson.above_lowest = true;
+  return {alpha, poisson};
+}
+
+std::filesystem::path StartFiles::file(const SceneTable& table, const std::string& key) const {
+  std::filesystem::path path = folder / table.text(key, "");
+  std::error_code error;
+  if (must_exist && !std::filesystem::is_regular_file(path, error)) {
+    table.fail(key, fmt::format("there is no such file ({})", path.lexically_normal().string()));
+  }
+  return path;
+}
+
+} // namespace boba

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/stages/start.h"
+
+namespace boba {
+
+/// [start] with `trajectory`: a frame of a trajectory that Boba wrote.
+class TrajectoryStart : public StartEntry {
+public:
+  static SceneSection section();
+  TrajectoryStart(const SceneTable& table, const StartFiles& files);
+
+  void check(const SceneTable&, const SceneGrains&) const override {}
+  bool cell_is_open(const SceneGrains&) const override { return false; }
+  Packing make(const StartContext& context) const override;
+
+private:
+  std::filesystem::path file_;
+  int frame_;
+  AlphaChoice material_;
+};
+
+} // namespace boba
