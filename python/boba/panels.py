@@ -6,8 +6,8 @@ COLOURS = ["#1b6ca8", "#d1495b", "#3c8d5a", "#8a5aa8", "#d98e04", "#5c6770"]
 
 
 def has(run, *names):
-    """True when the run has all these tables of measures."""
-    return all(name in run.measures for name in names)
+    """True when the run has all these tables of measures, with rows in them."""
+    return all(name in run.measures and len(run.measure(name).get("step", ())) > 0 for name in names)
 
 
 def _label(axes, x, y, title):
@@ -304,7 +304,7 @@ def available(runs, window):
         if some:
             chosen.append((name, lambda axes: draw(axes, some)))
 
-    tables = [(label, run) for label, run in runs if (run.folder / "table.csv").exists()]
+    tables = [(label, run) for label, run in runs if (run.folder / "table.csv").exists() and len(run.table.get("strain", ())) > 0]
     sheared = [(label, run) for label, run in tables if np.ptp(run.table["strain"]) > 0]
     compressed = [(label, run) for label, run in tables if np.ptp(run.table["phi_reference"]) > 0.02]
     offer("compaction", compaction, compressed)

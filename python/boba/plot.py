@@ -7,11 +7,13 @@ import sys
 from . import panels
 from .run import open_run
 
+SHEET_FORMATS = (".png", ".pdf", ".svg")
+
 
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="boba plot", description="Panels and pictures of one or several runs.")
     parser.add_argument("runs", nargs="+", help="output folders of runs; several are drawn together")
-    parser.add_argument("--output", help="folder of the pictures, or a PNG for the sheet of all panels alone "
+    parser.add_argument("--output", help="folder of the pictures, or a PNG, PDF or SVG for the sheet of all panels alone "
                         "(default: plots in the first run's folder, and the sheet as plot.png beside it)")
     parser.add_argument("--window", nargs=2, type=float, default=(1.0, 5.0), metavar=("FIRST", "LAST"),
                         help="strain window of averages (default: 1 5)")
@@ -79,11 +81,37 @@ def main(arguments=None):
     except FileNotFoundError as error:
         print(f"boba plot: {error}", file=sys.stderr)
         return 2
-    if chosen.output and chosen.output.endswith(".png"):
-        folder, sheet = None, pathlib.Path(chosen.output)
+    try:
+        if chosen.pictures:
+            check_frames(runs, chosen.frame)
+        return draw(chosen, runs)
+    except (OSError, ValueError, KeyError, IndexError) as error:
+        text = error.args[0] if isinstance(error, KeyError) and error.args else error
+        print(f"boba plot: {text}", file=sys.stderr)
+        return 2
+
+
+def check_frames(runs, number):
+    """Pictures need a frame of every run: told before anything is drawn."""
+    for _, run in runs:
+        if not run.frames.path.exists():
+            raise FileNotFoundError(f"{run.folder} holds no trajectory.h5, which --pictures draws from: a run stores "
+                                    "frames when its scene has [output.trajectory]")
+        n = len(run.frames)
+        if not -n <= number < n:
+            raise IndexError(f"--frame {number}: {run.frames.path} holds {n} frames")
+
+
+def draw(chosen, runs):
+    output = pathlib.Path(chosen.output) if chosen.output else None
+    if output and output.suffix in SHEET_FORMATS and not output.is_dir():
+        folder, sheet = None, output
+    elif output and output.suffix and not output.is_dir():
+        raise ValueError(f"--output {output}: {output.suffix} is no format of a sheet; there are "
+                         f"{', '.join(SHEET_FORMATS)}, and folders")
     else:
-        folder = pathlib.Path(chosen.output) if chosen.output else runs[0][1].folder / "plots"
-        sheet = (folder if chosen.output else runs[0][1].folder) / "plot.png"
+        folder = output or runs[0][1].folder / "plots"
+        sheet = (folder if output else runs[0][1].folder) / "plot.png"
         folder.mkdir(parents=True, exist_ok=True)
     written = draw_panels(runs, tuple(chosen.window), folder, sheet)
     if chosen.pictures:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One run: its folder, tables and frames."""
 import pathlib
+import time as clock
 
 import numpy as np
 
@@ -8,10 +9,14 @@ import numpy as np
 def read_table(path):
     """A CSV table as a dictionary of columns; an empty field is nan. Reads a table that is still being written."""
     with pathlib.Path(path).open() as file:
-        names = file.readline().rstrip("\n").split(",")
+        header = file.readline()
+        names = header.rstrip("\n").split(",") if header.endswith("\n") else []
         rows = [line.rstrip("\n").split(",") for line in file if line.endswith("\n")]
     rows = [row for row in rows if len(row) == len(names)]
-    values = np.array([[float(field) if field else np.nan for field in row] for row in rows], dtype=float)
+    try:
+        values = np.array([[float(field) if field else np.nan for field in row] for row in rows], dtype=float)
+    except ValueError as error:
+        raise ValueError(f"{path}: not a table of numbers: {error}") from None
     values = values.reshape(len(rows), len(names))
     return {name: values[:, k] for k, name in enumerate(names)}
 
@@ -41,6 +46,29 @@ def blocked_mean(values):
         inflation = error / first if first > 0 else 1.0
         if size**3 > 2 * n * inflation**4:
             return mean, error
+
+
+# Fill values: what a reader sees of a frame that is not written yet (docs/formats.md).
+_GROWING = ("particles/all/position/step", "particles/all/position/time", "particles/all/box/edges/value",
+            "particles/all/box/boba_origin/value", "particles/all/position/value", "particles/all/image/value",
+            "observables/strain/value", "observables/grain_centre/value", "observables/grain_stress/value")
+_IMAGE_NOT_WRITTEN = np.iinfo(np.int32).min
+
+
+def _is_complete(file, index):
+    """Every dataset has the frame, and no value of it is a fill value: what is flushed first is not known."""
+    for name in _GROWING:
+        values = file[name]
+        if len(values) <= index:
+            return False
+        frame = np.asarray(values[index])
+        if frame.dtype.kind == "f":
+            written = np.isfinite(frame).all()
+        else:
+            written = (frame >= 0).all() if name.endswith("step") else (frame != _IMAGE_NOT_WRITTEN).all()
+        if not written:
+            return False
+    return True
 
 
 class Frame:
@@ -87,23 +115,49 @@ class Frames:
 
         return h5py.File(self.path, "r")
 
+    def _read(self, look):
+        """Looks into the file. A run that goes on may be in the middle of a write: then it is opened again."""
+        for attempt in range(50):
+            try:
+                with self._file() as file:
+                    return look(file)
+            except FileNotFoundError:
+                raise
+            except (OSError, RuntimeError, KeyError) as error:
+                failure = error
+                clock.sleep(0.02)
+        raise OSError(f"{self.path}: cannot be read: {failure}") from failure
+
+    @staticmethod
+    def _count(file):
+        n = min(len(file[name]) for name in _GROWING)
+        while n > 0 and not _is_complete(file, n - 1):
+            n -= 1
+        return n
+
     def __len__(self):
-        with self._file() as file:
-            # Step and time are written last: a frame without them is not finished yet.
-            time = file["particles/all/position/time"][:]
-            return int(min(len(file["particles/all/position/step"]), np.isfinite(time).sum()))
+        return self._read(self._count)
 
     def __getitem__(self, index):
-        n = len(self)
-        if not -n <= index < n:
-            raise IndexError(f"{self.path}: frame {index} of {n}")
-        with self._file() as file:
-            return Frame(file, index % n)
+        def look(file):
+            n = self._count(file)
+            if not -n <= index < n:
+                return n
+            frame = Frame(file, index % n)
+            return frame if _is_complete(file, index % n) else None
+
+        frame = self._read(look)
+        if frame is None:
+            raise ValueError(f"{self.path}: frame {index} was never finished")
+        if not isinstance(frame, Frame):
+            raise IndexError(f"{self.path}: frame {index} of {frame}")
+        return frame
 
     def at_strain(self, strain):
         """The frame whose strain is nearest."""
-        with self._file() as file:
-            strains = file["observables/strain/value"][: len(self)]
+        strains = self._read(lambda file: file["observables/strain/value"][: self._count(file)])
+        if len(strains) == 0:
+            raise IndexError(f"{self.path}: holds no frame yet")
         return self[int(np.argmin(np.abs(strains - strain)))]
 
 
@@ -135,9 +189,16 @@ class Run:
         return self._read(path)
 
     def rows(self, name, step):
-        """The rows of one frame of a table of measures."""
+        """The rows of one frame of a table of measures; KeyError when that frame was not measured."""
         table = self.measure(name)
         chosen = table["step"] == step
+        if not chosen.any():
+            # A frame without contacts, facets or rows of motion has no rows; its summary has one.
+            summary = {"contacts": "coordination", "facets": "shape"}.get(name, name)
+            steps = self.steps(summary if summary in self.measures else name)
+            if step not in steps:
+                known = f"{steps[0]} to {steps[-1]}, {len(steps)} in all" if len(steps) else "none"
+                raise KeyError(f"{self.measures_folder / name}.csv: step {step} was not measured; steps: {known}")
         return {column: values[chosen] for column, values in table.items()}
 
     def steps(self, name):
