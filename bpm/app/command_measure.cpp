@@ -15,11 +15,16 @@ struct MeasureArguments {
   std::vector<std::string> what = {"all"};
   std::vector<double> window;
   std::string neighbours = "solid-angle";
+  bool relaxed = false;
+  double rest_time = MeasurePlan::default_rest;
 };
 
 ExitCode measure_stored_frames(MeasureArguments a, const Ranks& ranks) {
   ranks.collectively([&] { a.options.plan.kinds = measure_kinds(a.what); });
   a.options.plan.neighbours = a.neighbours == "voronoi" ? NeighbourRule::voronoi : NeighbourRule::solid_angle;
+  if (a.relaxed) {
+    a.options.plan.rest = a.rest_time;
+  }
   if (!a.window.empty()) {
     a.options.window = {a.window[0], a.window[1]};
   }
@@ -78,6 +83,10 @@ CommandBody add_measure_command(CLI::App& app) {
   app.add_option("--window", a->window, "strain window of the averages: FIRST LAST")->expected(2);
   app.add_option("--neighbours", a->neighbours, "rule for neighbours of order and motion")
       ->check(CLI::IsMember({"solid-angle", "voronoi"}))
+      ->capture_default_str();
+  app.add_flag("--relaxed", a->relaxed, "order of a copy of each frame after a short rest in its cell");
+  app.add_option("--rest-time", a->rest_time, "time of that rest, tau")
+      ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();
   app.add_option("--output", options.output, "folder of the tables (default: measures in the run's folder)");
   app.add_option("--threads", options.threads, "threads of a rank; 0 takes all cores")->check(CLI::Range(0, 1024));

@@ -71,6 +71,10 @@ std::shared_ptr<MeasureTables> measure_tables(const RunSetup& setup, const Simul
   const FileMode mode = setup.restart ? FileMode::append : FileMode::create;
   auto tables = std::make_shared<MeasureTables>(setup.folder.measures(), packing.topology(false), plan,
                                                 undeformed_grains(packing), mode, last_step, simulation.ranks());
+  if (plan.rest && plan.has(MeasureKind::order) && simulation.ranks().is_root()) {
+    tables->set_frame_rest(
+        std::make_shared<const FrameRest>(packing, plan.material, setup.scene.options.dt, *plan.rest));
+  }
   if (setup.restart && simulation.ranks().is_root() && plan.has(MeasureKind::motion)) {
     tables->restore_motion(setup.restart->motion);
   }

@@ -8,6 +8,7 @@
 #include "bpm/measure/scattering.h"
 #include "bpm/measure/template_matching.h"
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ struct MeasurePlan {
   measure::ScatteringOptions scattering;
   measure::BondOrderOptions order;
   measure::TemplateOptions templates;
+  static constexpr double default_rest = 100.0;
+  std::optional<double> rest; ///< order is that of a copy after a rest of this time, tau
   NeighbourRule neighbours = NeighbourRule::solid_angle;
   Material material;
 

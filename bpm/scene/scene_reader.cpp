@@ -84,6 +84,16 @@ MeasurePlan read_measure_plan(const SceneTable& table, const Scene& scene) {
   plan.packing_fraction.target_error = table.maybe_real("target_error");
   plan.scattering.q_max = table.real("q_max", plan.scattering.q_max);
   plan.facet_sensitivity = table.boolean("sensitivity", false);
+  const bool relaxed = table.boolean("relaxed", false);
+  if (relaxed && !plan.has(MeasureKind::order)) {
+    table.fail("relaxed", "is for `order`, which this [[measure]] does not take");
+  }
+  if (table.has("rest_time") && !relaxed) {
+    table.fail("rest_time", "needs relaxed = true");
+  }
+  if (relaxed) {
+    plan.rest = table.real("rest_time", MeasurePlan::default_rest);
+  }
   plan.neighbours =
       table.text("neighbours", "solid-angle") == "voronoi" ? NeighbourRule::voronoi : NeighbourRule::solid_angle;
   return plan;

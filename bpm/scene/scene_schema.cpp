@@ -87,6 +87,9 @@ std::vector<SceneSection> general_sections() {
                   above_key("q_max", "1/d", 0.0, 20.0, "1", "scattering: largest wave number"),
                   choice_key("neighbours", {"solid-angle", "voronoi"}, "\"solid-angle\"",
                              "rule for neighbours of order and motion"),
+                  boolean_key("relaxed", "false",
+                              "order of a copy after a short rest in its cell; the run itself does not change"),
+                  above_key("rest_time", "tau", 0.0, 1e6, "100", "time of that rest"),
                   boolean_key("sensitivity", "false", "count facets at other thresholds too")})),
   };
 }

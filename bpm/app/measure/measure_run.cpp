@@ -117,6 +117,15 @@ frame_stress(const MeasureRunOptions& options, const std::optional<Scene>& scene
   }
 }
 
+/// What lets copies of frames come to rest. \throws InputError when forces or walls are not known.
+std::shared_ptr<const FrameRest> frame_rest(const MeasureRunOptions& options, const std::optional<Scene>& scene) {
+  if (!scene) {
+    throw InputError("measure: --relaxed needs the material, but the trajectory names no scene to take it from");
+  }
+  return std::make_shared<const FrameRest>(read_trajectory_packing(trajectory_of(options.run), 0, std::nullopt),
+                                           scene->material, scene->options.dt, *options.plan.rest);
+}
+
 /// The tables, and what there is to say of them.
 std::unique_ptr<MeasureTables> open_tables(const MeasureRunOptions& options, const TrajectoryReader& reader,
                                            const Ranks& ranks, MeasureRunResult& result) {
@@ -130,6 +139,9 @@ std::unique_ptr<MeasureTables> open_tables(const MeasureRunOptions& options, con
   plan.material = scene ? scene->material : plan.material;
   const FileMode mode = options.force ? FileMode::overwrite : FileMode::create;
   auto tables = std::make_unique<MeasureTables>(result.folder, reader.topology(), plan, undeformed, mode, -1, ranks);
+  if (plan.rest && plan.has(MeasureKind::order) && ranks.is_root()) {
+    tables->set_frame_rest(frame_rest(options, scene));
+  }
   if (plan.has(MeasureKind::stress)) {
     auto [stress, reason] = frame_stress(options, scene, ranks);
     tables->set_frame_stress(std::move(stress));

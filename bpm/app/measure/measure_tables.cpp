@@ -183,12 +183,15 @@ void MeasureTables::write_frame(Frame& frame) {
   }
 }
 
+NeighbourLists MeasureTables::neighbours_of(const Frame& frame, const std::vector<Vector3>& centres) const {
+  return plan_.neighbours == NeighbourRule::voronoi
+             ? voronoi_neighbours(frame.snapshot.box, centres, frame.found.hull_radii)
+             : solid_angle_neighbours(frame.snapshot.box, centres);
+}
+
 void MeasureTables::find_neighbours(Frame& frame) const {
-  const Box& box = frame.snapshot.box;
   frame.centres = grain_centres(GrainNodes(frame.snapshot.position, topology_.first_node));
-  frame.neighbours = plan_.neighbours == NeighbourRule::voronoi
-                         ? voronoi_neighbours(box, frame.centres, frame.found.hull_radii)
-                         : solid_angle_neighbours(box, frame.centres);
+  frame.neighbours = neighbours_of(frame, frame.centres);
 }
 
 void MeasureTables::add_stress(const Frame& frame) {

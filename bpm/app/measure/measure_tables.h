@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/app/measure/frame_measures.h"
+#include "bpm/app/measure/frame_rest.h"
 #include "bpm/app/measure/frame_stress.h"
 #include "bpm/app/measure/grain_shapes.h"
 #include "bpm/io/table.h"
@@ -38,6 +39,9 @@ public:
   /// Forces evaluated anew: used for the stress instead of what the frames hold. Null: what the frames hold. With
   /// several ranks all are given one, and every frame whole.
   void set_frame_stress(std::shared_ptr<FrameStress> stress) { frame_stress_ = std::move(stress); }
+
+  /// The order of frames is that of a copy after a rest. Needed on rank 0 alone.
+  void set_frame_rest(std::shared_ptr<const FrameRest> rest) { frame_rest_ = std::move(rest); }
 
   /// What `motion` remembers of the frames so far, so that a run that goes on continues its tables.
   std::vector<double> save_motion() const;
@@ -80,6 +84,7 @@ private:
   void add_contacts(const Frame& frame);
   void add_motion(const Frame& frame);
   void find_neighbours(Frame& frame) const;
+  measure::NeighbourLists neighbours_of(const Frame& frame, const std::vector<Vector3>& centres) const;
   /// Mean over the grains of what their undeformed template has; unknown when one of them is.
   template <class Known, class Value>
   std::optional<double> undeformed_mean(const std::vector<std::optional<Known>>& known, const Value& value) const {
@@ -98,6 +103,7 @@ private:
   MeasurePlan plan_;
   const Ranks& ranks_;
   std::shared_ptr<FrameStress> frame_stress_;
+  std::shared_ptr<const FrameRest> frame_rest_;
   std::map<std::string, TableWriter> tables_;
   std::map<std::string, Series> series_;
 

@@ -76,7 +76,8 @@ std::vector<std::string> MeasureTables::order_columns() {
           "largest_finite_cluster",
           "bragg_peak",
           "voronoi_volume_mean_d3",
-          "voronoi_volume_deviation_d3"};
+          "voronoi_volume_deviation_d3",
+          "rest_tau"};
 }
 
 std::vector<std::string> MeasureTables::grain_order_columns() {
@@ -88,7 +89,10 @@ std::vector<std::string> MeasureTables::grain_order_columns() {
 }
 
 void MeasureTables::add_order(const Frame& frame) {
-  const FrameOrder order = order_of(frame.snapshot.box, frame.centres, frame.neighbours, plan_);
+  const std::vector<Vector3> rested =
+      frame_rest_ ? frame_rest_->rested_centres(frame.snapshot) : std::vector<Vector3>();
+  const FrameOrder order = frame_rest_ ? order_of(frame.snapshot.box, rested, neighbours_of(frame, rested), plan_)
+                                       : order_of(frame.snapshot.box, frame.centres, frame.neighbours, plan_);
   const std::size_t n = order.bonds.size();
   for (std::size_t g = 0; g < n; ++g) {
     const BondOrder& o = order.bonds[g];
@@ -145,6 +149,7 @@ void MeasureTables::add_order(const Frame& frame) {
     row.emplace_back(volume);
     row.emplace_back(std::sqrt(mean([&](std::size_t g) { return std::pow(order.volumes[g] - volume, 2); })));
   }
+  row.emplace_back(frame_rest_ ? plan_.rest.value_or(0.0) : 0.0);
   write("order", frame.snapshot, row);
   const auto share = [&](auto first, auto second, auto third, const auto& counts) {
     return (counts[static_cast<std::size_t>(first)] + counts[static_cast<std::size_t>(second)] +

@@ -177,6 +177,29 @@ class Program(unittest.TestCase):
             self.assertEqual((self.folder / "stopped/measures" / name).read_text(),
                              (self.folder / "run/measures" / name).read_text(), name)
 
+    def test_order_of_rested_copies_leaves_the_run_as_it_was(self):
+        dump = SCENE.replace("[output.trajectory]", "[output.dump]\nevery_strain = 0.1\n[output.trajectory]")
+        plain = dump.replace(", order, contacts", ", contacts")
+        rested = plain.replace("[[template]]", '[[measure]]\nwhat = "order"\nrelaxed = true\nrest_time = 20\n'
+                               "every_strain = 0.05\n[[template]]")
+        for name, scene in (("plain", plain), ("rested", rested)):
+            (self.folder / f"{name}.toml").write_text(scene)
+            done = boba_program(self.folder, "run", f"{name}.toml", "--output", name)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        for file in ("table.csv", "dump.lammpstrj", "measures/stress.csv", "measures/motion.csv"):
+            self.assertEqual((self.folder / "plain" / file).read_bytes(), (self.folder / "rested" / file).read_bytes(),
+                             file)
+        live = boba.open(self.folder / "rested").measure("order")
+        flowing = boba.open(self.folder / "run").measure("order")
+        self.assertEqual(set(live["rest_tau"]), {20.0})
+        self.assertEqual(set(flowing["rest_tau"]), {0.0})
+        self.assertGreater(abs(live["q6_mean"] - flowing["q6_mean"]).max(), 1e-4)
+        stored = boba_program(self.folder, "measure", "rested", "--output", "rested_again", "--what", "order",
+                              "--relaxed", "--rest-time", "20")
+        self.assertEqual(stored.returncode, 0, stored.stderr)
+        again = boba.open(self.folder / "rested", self.folder / "rested_again").measure("order")
+        np.testing.assert_allclose(again["q6_mean"], live["q6_mean"], atol=1e-6)
+
     def test_plot_of_a_run(self):
         plotted = boba_program(self.folder, "plot", "run", "--pictures", "--window", "0.05", "0.3")
         self.assertEqual(plotted.returncode, 0, plotted.stderr)
