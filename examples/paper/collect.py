@@ -30,6 +30,11 @@ def at_steps(table, steps):
     return np.clip(np.searchsorted(table["step"], steps), 0, len(table["step"]) - 1)
 
 
+def not_ordered(order):
+    """Share of grains that are no crystal by bond order; those among their own copies are none."""
+    return order["disordered_share"] + order.get("unknown_share", 0.0)
+
+
 def log_numbers(run):
     """Seconds and node-steps from run.log, all sessions of the run together."""
     text = (run.folder / "run.log").read_text()
@@ -71,7 +76,7 @@ def compaction(run, spec):
                          "phi_error": f"{measured['phi_error'][k]:.5f}",
                          "phi_nodes": f"{measured['phi_nodes'][k]:.5f}",
                          "phi_reference": f"{measured['phi_reference'][k]:.5f}",
-                         "ordered": f"{1 - order['disordered_share'][k]:.3f}"})
+                         "ordered": f"{1 - not_ordered(order)[k]:.3f}"})
     return rows
 
 
@@ -160,6 +165,12 @@ def early(run, spec):
     return [row]
 
 
+#: Columns of the table of order that runs have which were measured before there were templates and clusters have not.
+NEW_ORDER = ("unknown_share", "template_fcc_share", "template_hcp_share", "template_bcc_share", "template_unknown_share",
+             "template_rmsd_mean", "solid_share", "largest_cluster", "largest_percolates_x", "largest_percolates_y",
+             "largest_percolates_z", "largest_finite_cluster", "bragg_peak")
+
+
 def structure(run, spec):
     """Order, shapes and phi of every measured frame of the shear."""
     if spec["scene"] == "compaction" or "order" not in run.measures:
@@ -172,8 +183,10 @@ def structure(run, spec):
     for k in np.flatnonzero(order["step"] >= first):
         step = order["step"][k]
         row = {"strain": f"{order['strain'][k]:.2f}"}
-        row |= {name: f"{order[name + '_share'][k]:.3f}" for name in ("fcc", "hcp", "bcc", "disordered")}
+        row |= {name: f"{order[name + '_share'][k]:.3f}" for name in ("fcc", "hcp", "bcc")}
+        row["disordered"] = f"{not_ordered(order)[k]:.3f}"
         row |= {name: f"{order[name][k]:.4f}" for name in ("q6_mean", "averaged_q6_mean")}
+        row |= {name: f"{order[name][k]:.4g}" for name in NEW_ORDER if name in order}
         names = ("volume_mean_d3", "volume_deviation_d3", "asphericity_mean", "asphericity_deviation", "facets_mean",
                  "twelve_facets_share", "faceted_share", "facets_transitive_mean", "faceted_share_transitive")
         here = np.flatnonzero(shape["step"] == step) if shape else []
@@ -220,8 +233,35 @@ def traces(run, spec):
             for s, v, a in zip(grains["strain"][chosen], grains["volume_d3"][chosen], grains["asphericity"][chosen])]
 
 
+def rest(run, spec):
+    """A crystal or a disordered packing at rest under the pressure, before shear: each grain's share of everything.
+
+    `energy` is the table's elastic energy (pairwise part: the many-body term of alpha has none), `work` that of the cell
+    on the packing, -integral of P dV over the compression, which holds what was dissipated too.
+    """
+    if spec["scene"] != "crystal":
+        return []
+    table, order = run.table, run.measure("order")
+    last = start_of_shear(table)
+    if last >= len(table["step"]) - 1 and not is_done(run):
+        return []
+    k = min(last, len(table["step"]) - 1)
+    n = int(spec["grains"])
+    volume = table["Lx_d"] * table["Ly_d"] * table["Lz_d"] / n
+    pressure = table["P_k/d"]
+    work = -float(np.sum(0.5 * (pressure[1: k + 1] + pressure[:k]) * np.diff(volume[: k + 1])))
+    o = int(np.argmin(np.abs(order["step"] - table["step"][k])))
+    row = {"arrangement": spec["arrangement"], "P": f"{table['P_normalised'][k]:.5g}", "pressure": f"{pressure[k]:.6g}",
+           "volume": f"{volume[k]:.5f}", "phi_reference": f"{table['phi_reference'][k]:.5f}",
+           "energy": f"{table['elastic_energy_kd2'][k] / n:.6g}", "work": f"{work:.6g}",
+           "enthalpy": f"{work + pressure[k] * volume[k]:.6g}",
+           "kinetic": f"{table['kinetic_energy_kd2'][k] / n:.3g}"}
+    return [row | {name: f"{order[name][o]:.4g}" for name in NEW_ORDER + ("template_shear_mean",)}]
+
+
 TABLES = {"summary": summary, "compaction": compaction, "jamming": jamming, "scattering": scattering, "series": series, "early": early,
-          "structure": structure, "distributions": distributions, "traces": traces}
+          "structure": structure, "distributions": distributions, "traces": traces,
+          "rest": rest}
 
 
 def peer(out, results):
@@ -241,9 +281,9 @@ def peer(out, results):
 
 
 def write(path, rows):
-    names = list(rows[0]) if rows else ["name"]
+    names = list(dict.fromkeys(name for row in rows for name in row)) or ["name"]  # newer rows may have more columns
     with path.open("w", newline="") as file:
-        writer = csv.DictWriter(file, names, lineterminator="\n")
+        writer = csv.DictWriter(file, names, restval="", lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
 
@@ -264,6 +304,8 @@ def main(plan, out, results):
             except (IndexError, KeyError):  # only just begun
                 new = []
             rows += old if new is None else [{"name": spec["name"]} | row for row in new]
+        if name == "rest" and not rows:
+            continue  # only a plan with crystals has it
         write(path, rows)
         print(f"{path}: {len(rows)} rows")
     peer(out, results)

@@ -11,13 +11,15 @@ def settings(row):
     values = {"seed": row["seed"], "species.0.count": row["grains"]}
     if row["scene"] != "spheres":
         values |= {"template.0.nodes": row["nodes"], "species.0.alpha": row["alpha"]}
+    if row.get("arrangement"):
+        values["stage.insert.arrangement"] = f'"{row["arrangement"]}"'
     if row["surface"]:
         values["template.0.surface"] = f'"{row["surface"]}"'
     if row["rate"]:
         values |= {"stage.shear.rate": row["rate"], "stage.shear.strain": row["strain"]}
     if row["every"]:
         values["measure.0.every_strain"] = row["every"]
-    if row["scene"] == "shear":
+    if row["scene"] in ("shear", "crystal"):
         values |= {"stage.shear.remap": f'"{row["remap"]}"', "measure.1.every_strain": row["every"]}
     return values
 

@@ -9,7 +9,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
-from boba import blocked_mean
+from boba import blocked_mean, crystallisation
 from figures import GRAIN_KINDS, POISSON, Results, kind_text, mean_of_runs, packing_text
 
 BEGIN, END = "<!-- numbers: written by examples/paper/table.py -->", "<!-- end of numbers -->"
@@ -147,6 +147,16 @@ def late_order(results, name):
     return float(np.mean(1 - disordered[strain > 0.8 * strain.max()]))
 
 
+def judgement(results, name):
+    """Whether a run crystallised by nuclei, where clusters were measured; else nothing."""
+    columns = ("strain", "solid_share", "largest_finite_cluster")
+    rows = [row for row in results.rows("structure", name) if row.get("solid_share")]
+    if len(rows) < 5:
+        return ""
+    found = crystallisation({column: np.array([float(row[column]) for row in rows]) for column in columns})
+    return f", largest nucleus {found.nucleus}, {'crystallised' if found.crystallised else 'not crystallised'}"
+
+
 def order_rows(table, results):
     published = {"-0.8": "3 of 3 by strain 102.4", "0": "3 of 3", "2": "3 of 3", "5": "1 of 3", "12": "0 of 3"}
     long = [row for row in results.plan.values() if row["scene"] == "shear" and float(row["strain"]) > 10]
@@ -161,7 +171,8 @@ def order_rows(table, results):
             ordered = [n for n in names if late_order(results, n) > 0.5]
             detail = "; ".join(f"to strain {results.reached(n):.0f}: " + (
                 f"order from {onset(results, n):.0f}, share at the end {late_order(results, n):.2f}"
-                if onset(results, n) else f"none, share at the end {late_order(results, n):.2f}") for n in names)
+                if onset(results, n) else f"none, share at the end {late_order(results, n):.2f}") + judgement(results, n)
+                for n in names)
             table.text(f"runs that order, nu = {nu:g}, {packing_text(grains, nodes, surface)}, rate {rate}", published[alpha],
                        f"{len(ordered)} of {len(names)} ({detail})" if names else "not afforded",
                        f"{int(grains) ** (1 / 3):.0f} grains an edge (published: 10); rate {float(rate) / 1.6e-5:.0f} times the published one")
