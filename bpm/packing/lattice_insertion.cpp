@@ -40,17 +40,19 @@ double elongation(const UnitCell& cell, const std::array<int, 3>& n) {
   return edges.maxCoeff() / edges.minCoeff();
 }
 
-std::optional<std::array<int, 3>> cubic_repetitions(int n_cells) {
-  const int n = static_cast<int>(std::lround(std::cbrt(static_cast<double>(n_cells))));
+std::optional<std::array<int, 3>> cubic_repetitions(std::int64_t n_cells) {
+  const auto n = static_cast<int>(std::lround(std::cbrt(static_cast<double>(n_cells))));
   return n > 0 && static_cast<std::int64_t>(n) * n * n == n_cells ? std::optional(std::array{n, n, n}) : std::nullopt;
 }
 
-std::optional<std::array<int, 3>> compact_repetitions(const UnitCell& cell, int n_cells) {
+std::optional<std::array<int, 3>> compact_repetitions(const UnitCell& cell, std::int64_t n_cells) {
   constexpr double longest = 1.3;
+  // No edge of such a cell is longer than 1.3 times that of the cube of the same volume.
+  const double cube = std::cbrt(static_cast<double>(n_cells) * cell.edges.prod());
   std::optional<std::array<int, 3>> best;
-  for (int n0 = 1; n0 <= n_cells; ++n0) {
-    for (int n1 = 1; n_cells % n0 == 0 && n1 <= n_cells / n0; ++n1) {
-      const std::array<int, 3> n = {n0, n1, n_cells / n0 / n1};
+  for (int n0 = 1; n0 * cell.edges[0] <= longest * cube; ++n0) {
+    for (int n1 = 1; n_cells % n0 == 0 && n1 * cell.edges[1] <= longest * cube; ++n1) {
+      const std::array<int, 3> n = {n0, n1, static_cast<int>(n_cells / n0 / n1)};
       if (n_cells / n0 % n1 == 0 && elongation(cell, n) <= longest &&
           (!best || elongation(cell, n) < elongation(cell, *best))) {
         best = n;
@@ -61,8 +63,8 @@ std::optional<std::array<int, 3>> compact_repetitions(const UnitCell& cell, int 
 }
 
 /// The next count below (step -1) or above (step 1) that fills the lattice; 0 without one.
-int next_count(Arrangement arrangement, int count, int step) {
-  for (int n = count + step; n > 0 && n < 8 * count + 64; n += step) {
+std::int64_t next_count(Arrangement arrangement, std::int64_t count, int step) {
+  for (std::int64_t n = count + step; n > 0 && n < 8 * count + 64; n += step) {
     if (lattice_repetitions(arrangement, n)) {
       return n;
     }
@@ -76,6 +78,10 @@ std::vector<std::string> arrangement_names() {
   return {"random", "fcc", "hcp", "bcc", "sc"};
 }
 
+std::string name_of(Arrangement arrangement) {
+  return arrangement_names()[static_cast<std::size_t>(arrangement)];
+}
+
 Arrangement arrangement_named(const std::string& name) {
   const std::vector<std::string> names = arrangement_names();
   const auto found = std::find(names.begin(), names.end(), name);
@@ -86,7 +92,7 @@ Arrangement arrangement_named(const std::string& name) {
   return static_cast<Arrangement>(found - names.begin());
 }
 
-std::optional<std::array<int, 3>> lattice_repetitions(Arrangement arrangement, int count) {
+std::optional<std::array<int, 3>> lattice_repetitions(Arrangement arrangement, std::int64_t count) {
   const UnitCell cell = unit_cell(arrangement);
   const int n_sites = static_cast<int>(cell.sites.size());
   if (count < 1 || count % n_sites != 0) {
@@ -96,14 +102,13 @@ std::optional<std::array<int, 3>> lattice_repetitions(Arrangement arrangement, i
                                          : cubic_repetitions(count / n_sites);
 }
 
-void check_lattice_count(Arrangement arrangement, int count) {
+void check_lattice_count(Arrangement arrangement, std::int64_t count) {
   if (arrangement == Arrangement::random || lattice_repetitions(arrangement, count)) {
     return;
   }
-  const int below = next_count(arrangement, count, -1), above = next_count(arrangement, count, 1);
+  const std::int64_t below = next_count(arrangement, count, -1), above = next_count(arrangement, count, 1);
   throw std::invalid_argument(
-      fmt::format("{} grains do not fill a {} lattice; the next counts that do are {}", count,
-                  arrangement_names()[static_cast<std::size_t>(arrangement)],
+      fmt::format("{} grains do not fill a {} lattice; the next counts that do are {}", count, name_of(arrangement),
                   below > 0 ? fmt::format("{} and {}", below, above) : fmt::format("{}", above)));
 }
 
@@ -129,7 +134,7 @@ Packing insert_on_lattice(const Insertion& insertion, Arrangement arrangement) {
         "insert: at packing_fraction = {:g} neighbours of the {} lattice are {:.4g} d apart, and the largest grain's "
         "bounding sphere (radius to the outermost node plus d/2) is {:.4g} d across. Allowed for these grains: at most "
         "{:.3f}; compress afterwards",
-        insertion.packing_fraction, arrangement_names()[static_cast<std::size_t>(arrangement)], distance, 2.0 * radius,
+        insertion.packing_fraction, name_of(arrangement), distance, 2.0 * radius,
         insertion.packing_fraction * std::pow(distance / (2.0 * radius), 3)));
   }
   Random random(insertion.seed);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/packing/lattice_insertion.h"
 #include "bpm/stages/start.h"
 
 namespace boba {
 
-/// A first [[stage]] with `type = "insert"`: all grains at random, without overlap, in a cubic periodic cell.
+/// A first [[stage]] with `type = "insert"`: all grains without overlap in a periodic cell, at random or on the sites
+/// of a crystal.
 class InsertStart : public StartEntry {
 public:
   static SceneSection section();
@@ -19,6 +21,7 @@ public:
 private:
   double packing_fraction_; ///< sum of reference volumes over cell volume
   bool rotate_;
+  Arrangement arrangement_;
 };
 
 } // namespace boba
