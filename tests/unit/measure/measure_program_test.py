@@ -154,7 +154,9 @@ class Program(unittest.TestCase):
 
     def test_mistakes_are_named_and_write_nothing(self):
         for text, word in ((SCENE.replace("stress, shape", "stress, colour"), "colour"),
-                           (SCENE.replace("packing-fraction, motion", "shape"), "another")):
+                           (SCENE.replace("packing-fraction, motion", "shape"), "another"),
+                           (SCENE.replace("points = 20000", "points = 20000\nrelaxed = true"), "relaxed"),
+                           (SCENE.replace("fraction = 0.25", 'fraction = 0.25\narrangement = "fcc"'), "4 and 32")):
             (self.folder / "wrong.toml").write_text(text)
             refused = boba_program(self.folder, "run", "wrong.toml", "--output", "wrong")
             self.assertEqual(refused.returncode, 2)
@@ -186,7 +188,11 @@ class Program(unittest.TestCase):
             (self.folder / f"{name}.toml").write_text(scene)
             done = boba_program(self.folder, "run", f"{name}.toml", "--output", name)
             self.assertEqual(done.returncode, 0, done.stderr)
-        for file in ("table.csv", "dump.lammpstrj", "measures/stress.csv", "measures/motion.csv"):
+        tables = [boba.open(self.folder / name).table for name in ("plain", "rested")]
+        for column in tables[0]:
+            if column != "speed_steps/s":
+                np.testing.assert_array_equal(tables[0][column], tables[1][column], column)
+        for file in ("dump.lammpstrj", "measures/stress.csv", "measures/motion.csv"):
             self.assertEqual((self.folder / "plain" / file).read_bytes(), (self.folder / "rested" / file).read_bytes(),
                              file)
         live = boba.open(self.folder / "rested").measure("order")
@@ -199,6 +205,21 @@ class Program(unittest.TestCase):
         self.assertEqual(stored.returncode, 0, stored.stderr)
         again = boba.open(self.folder / "rested", self.folder / "rested_again").measure("order")
         np.testing.assert_allclose(again["q6_mean"], live["q6_mean"], atol=1e-6)
+
+    def test_a_crystal_is_one_at_the_start(self):
+        for arrangement, count in (("fcc", 32), ("hcp", 48), ("bcc", 54)):
+            scene = (SCENE.replace("count = 12", f"count = {count}")
+                     .replace("fraction = 0.25", f'fraction = 0.25\narrangement = "{arrangement}"'))
+            scene = scene[:scene.index('[[stage]]\ntype = "compress"')] + '[[stage]]\ntype = "hold"\ntime = 1\n'
+            (self.folder / f"{arrangement}.toml").write_text(scene)
+            done = boba_program(self.folder, "run", f"{arrangement}.toml", "--output", arrangement)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            order = boba.open(self.folder / arrangement).measure("order")
+            self.assertEqual(order[f"template_{arrangement}_share"][0], 1.0)
+            self.assertAlmostEqual(order["bragg_peak"][0], 1.0, delta=1e-6)
+            self.assertEqual(order["largest_cluster"][0], count)
+            self.assertEqual(order["largest_percolates_y"][0], 1.0)
+            self.assertEqual(order["largest_finite_cluster"][0], 0.0)
 
     def test_plot_of_a_run(self):
         plotted = boba_program(self.folder, "plot", "run", "--pictures", "--window", "0.05", "0.3")
