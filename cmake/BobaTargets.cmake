@@ -11,21 +11,28 @@ option(BOBA_UNITY_BUILD "Compile the sources of a library in groups" ON)
 set(BOBA_UNITY_BATCH 8 CACHE STRING "Sources of such a group")
 
 # boba_add_library(NAME [SOURCES ...] [LIBRARIES ...]): target boba_NAME with the alias boba::NAME.
-# Without sources it is a header-only (interface) library.
+# Without sources it is a header-only (interface) library. Where BOBA_EXPORT is set (bpm/CMakeLists.txt) the library is
+# installed and find_package(boba) gives it under the same name.
 function(boba_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  set(include_folders $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}> $<INSTALL_INTERFACE:${BOBA_INSTALL_INCLUDEDIR}>)
   if(ARG_SOURCES)
     add_library(boba_${name} STATIC ${ARG_SOURCES})
-    target_include_directories(boba_${name} PUBLIC ${CMAKE_SOURCE_DIR})
-    target_link_libraries(boba_${name} PUBLIC ${ARG_LIBRARIES} PRIVATE boba_warnings)
+    target_include_directories(boba_${name} PUBLIC "${include_folders}")
+    target_link_libraries(boba_${name} PUBLIC ${ARG_LIBRARIES} PRIVATE $<BUILD_INTERFACE:boba_warnings>)
     set_target_properties(boba_${name} PROPERTIES UNITY_BUILD ${BOBA_UNITY_BUILD}
       UNITY_BUILD_BATCH_SIZE ${BOBA_UNITY_BATCH})
   else()
     add_library(boba_${name} INTERFACE)
-    target_include_directories(boba_${name} INTERFACE ${CMAKE_SOURCE_DIR})
+    target_include_directories(boba_${name} INTERFACE "${include_folders}")
     target_link_libraries(boba_${name} INTERFACE ${ARG_LIBRARIES})
   endif()
   add_library(boba::${name} ALIAS boba_${name})
+  set_target_properties(boba_${name} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(boba_${name} INTERFACE cxx_std_20)
+  if(BOBA_EXPORT)
+    install(TARGETS boba_${name} EXPORT boba_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/boba)
+  endif()
 endfunction()
 
 set(BOBA_TIMEOUT_FACTOR 1 CACHE STRING "what tests may take longer in this build: sanitizers slow them down")
