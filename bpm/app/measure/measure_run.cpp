@@ -4,10 +4,10 @@
 #include "bpm/app/measure/measure_tables.h"
 #include "bpm/io/input_error.h"
 #include "bpm/io/trajectory.h"
+#include "bpm/io/trajectory_packing.h"
 #include "bpm/measure/blocking.h"
 #include "bpm/parallel/message_passing.h"
 #include "bpm/scene/scene.h"
-#include "bpm/io/trajectory_packing.h"
 
 #include <algorithm>
 #include <cmath>
