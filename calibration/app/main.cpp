@@ -11,6 +11,7 @@
 int main(int argc, char** argv) {
   using namespace boba::calibration;
   CLI::App app("From the bonds (k, alpha) to the elastic constants (E, nu) and back.", "boba-calibrate");
+  app.set_version_flag("--version", "boba-calibrate " BOBA_VERSION);
   app.require_subcommand(1);
   const std::vector<Command> commands = {add_table(app),  add_make_table(app), add_find(app),   add_limit(app),
                                          add_strain(app), add_specimen(app),   add_compare(app)};

@@ -11,6 +11,7 @@
 int main(int argc, char** argv) {
   using namespace boba::continuum;
   CLI::App app("Linear elastic reference: one compressed cylinder, or one sphere between plates.", "boba-continuum");
+  app.set_version_flag("--version", "boba-continuum " BOBA_VERSION);
   app.require_subcommand(1);
   app.fallthrough();
   const auto commands = add_commands(app);
