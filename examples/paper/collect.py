@@ -304,8 +304,9 @@ def main(plan, out, results):
             except (IndexError, KeyError):  # only just begun
                 new = []
             rows += old if new is None else [{"name": spec["name"]} | row for row in new]
-        if name == "rest" and not rows:
-            continue  # only a plan with crystals has it
+        # The plan of crystals has few of the tables, and it alone has `rest`.
+        if not rows and (name == "rest" or all(spec["scene"] == "crystal" for spec in specs)):
+            continue
         write(path, rows)
         print(f"{path}: {len(rows)} rows")
     peer(out, results)
