@@ -2,6 +2,7 @@
 #include "bench/engine/dense_packing.h"
 
 #include "bpm/dynamics/stepper.h"
+#include "bpm/dynamics/take_snapshot.h"
 #include "bpm/grain/template_cache.h"
 #include "bpm/io/checkpoint.h"
 #include "bpm/io/input_error.h"
@@ -56,7 +57,7 @@ Snapshot compressed_and_sheared(const Packing& loose, double pressure) {
     stepper.move_cell(dense_shear_rates(stepper.pressure() - pressure));
   }
   stepper.advance(Virial::full);
-  return stepper.snapshot({.velocity = true});
+  return take_snapshot(stepper.moving(), {.velocity = true});
 }
 
 std::vector<double> flat(const std::vector<Vector3>& vectors) {

@@ -54,12 +54,12 @@ void dense_shear(benchmark::State& state, double rate) {
                        state.range(4) != 0 ? Precision::mixed : Precision::full,
                        rate};
   Stepper& stepper = stepper_of(scene);
-  const Timings before = stepper.timings();
+  const Timings before = timings_of(stepper.moving());
   const ContactList::Counts counts = stepper.forces().contact_list().counts();
   for (auto _ : state) {
     shear(stepper, scene);
   }
-  const Timings after = stepper.timings();
+  const Timings after = timings_of(stepper.moving());
   const double nodes = static_cast<double>(stepper.packing().position.size());
   const double steps = static_cast<double>(state.iterations());
   const double all = (after.bonds - before.bonds) + (after.contacts - before.contacts) +
@@ -78,7 +78,7 @@ void dense_shear(benchmark::State& state, double rate) {
   state.counters["steps_per_pair_search"] =
       steps_per(list.counts().pairs, counts.pairs, static_cast<double>(list.pairs().size()));
   state.counters["nodes_looked_up/step"] = static_cast<double>(list.counts().nodes - counts.nodes) / steps;
-  state.counters["bytes_per_node"] = static_cast<double>(stepper.bytes()) / nodes;
+  state.counters["bytes_per_node"] = static_cast<double>(bytes_of(stepper.moving())) / nodes;
   state.counters["candidates/node"] = static_cast<double>(list.n_candidates()) / nodes;
   state.counters["contacts/node"] = static_cast<double>(stepper.forces().contact_totals().n_touching) / nodes;
   state.SetLabel(stepper.forces().kernel_table().name);

@@ -4,6 +4,7 @@
 #include "bench/engine/dense_packing.h"
 #include "bench/engine/skips.h"
 #include "bpm/app/write_behind.h"
+#include "bpm/dynamics/take_snapshot.h"
 #include "bpm/io/lammps_dump.h"
 #include "bpm/io/trajectory.h"
 
@@ -34,7 +35,7 @@ void step(benchmark::State& state, Output output, Writes writes, int threads) {
     const bool wanted = output != Output::nothing && (stepper.step() + 1) % interval == 0;
     stepper.advance(wanted ? Virial::full : Virial::trace);
     if (wanted) {
-      Snapshot frame = stepper.snapshot({.velocity = output == Output::dump});
+      Snapshot frame = take_snapshot(stepper.moving(), {.velocity = output == Output::dump});
       if (writes == Writes::run) {
         write(frame);
       } else {

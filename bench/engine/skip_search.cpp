@@ -3,6 +3,7 @@
 #include "bench/engine/count_node_steps.h"
 #include "bench/engine/dense_packing.h"
 #include "bench/engine/skips.h"
+#include "bpm/dynamics/take_snapshot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +73,7 @@ kernels::ContactNode contact_node(const Vector3& x, const Vector3& v) {
 void contacts(benchmark::State& state, Looked looked) {
   Stepper stepper(dense_packing(16, 5137, 2.0), Material{}, SimulationOptions{});
   stepper.start();
-  const Snapshot now = stepper.snapshot({.velocity = true});
+  const Snapshot now = take_snapshot(stepper.moving(), {.velocity = true});
   const std::vector<std::int64_t> first = stepper.packing().first_nodes();
   const ContactList& list = stepper.forces().contact_list();
   const kernels::KernelTable& table = stepper.forces().kernel_table();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/scaling/count_halo.h"
 
+#include "bpm/dynamics/take_snapshot.h"
 #include "bpm/parallel/placement.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace {
 
 PlacementInput placement_of(const Stepper& stepper, int n_ranks) {
   const Packing& packing = stepper.packing();
-  const Snapshot snapshot = stepper.snapshot({});
+  const Snapshot snapshot = take_snapshot(stepper.moving(), {});
   PlacementInput input = {&packing, n_ranks, lanes_of_block(stepper.options().precision), {}, {}};
   for (int g = 0; g < packing.n_grains(); ++g) {
     input.fractional.push_back(snapshot.box.to_fractional(snapshot.grain_centre[g]));

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Seconds that a trajectory frame and a checkpoint take on the ranks it is started on, and each rank's largest memory.
 // The packing is a grid of grains without bonds; no step is made. Prints one line of JSON.
+#include "bpm/dynamics/motion_archive.h"
 #include "bpm/dynamics/share_state.h"
 #include "bpm/dynamics/stepper.h"
+#include "bpm/dynamics/take_snapshot.h"
 #include "bpm/io/checkpoint.h"
 #include "bpm/io/shared_trajectory.h"
 #include "bpm/parallel/message_passing.h"
@@ -86,7 +88,7 @@ double frame_seconds(const Arguments& a, const Stepper& stepper) {
   if (!a.gather) {
     SharedTrajectory trajectory(ranks, path, stepper.packing().first_nodes(), open);
     const double seconds = median_seconds(a.repeats, ranks, [&](int k) {
-      Snapshot own = stepper.snapshot({.velocity = true, .own = true});
+      Snapshot own = take_snapshot(stepper.moving(), {.velocity = true, .own = true});
       own.step = k;
       trajectory.write(own);
     });
@@ -98,7 +100,7 @@ double frame_seconds(const Arguments& a, const Stepper& stepper) {
     writer.emplace(open(false));
   }
   return median_seconds(a.repeats, ranks, [&](int k) {
-    Snapshot whole = stepper.snapshot({.velocity = true});
+    Snapshot whole = take_snapshot(stepper.moving(), {.velocity = true});
     whole.step = k;
     if (writer) {
       writer->write(whole);
@@ -110,7 +112,7 @@ double checkpoint_seconds(const Arguments& a, const Stepper& stepper) {
   const std::vector<std::int64_t> first_node = stepper.packing().first_nodes();
   return median_seconds(a.repeats, stepper.ranks(), [&](int) {
     SavedState state;
-    stepper.save(state);
+    save_motion(stepper.moving(), state);
     write_checkpoint(a.folder, {{}, std::move(state.real), std::move(state.integer)}, stepper.ranks(),
                      {{entries_of_nodes.begin(), entries_of_nodes.end()},
                       node_runs(stepper.layout().grains(), first_node),

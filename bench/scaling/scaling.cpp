@@ -49,14 +49,14 @@ void run(const Arguments& a, const Ranks& ranks) {
   for (int warm = 0; warm < 20; ++warm) {
     step();
   }
-  const Timings before = stepper.timings();
+  const Timings before = timings_of(stepper.moving());
   const double processor_before = processor_seconds();
   const auto begin = std::chrono::steady_clock::now();
   for (int k = 0; k < a.steps; ++k) {
     step();
   }
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / a.steps;
-  const Timings t = stepper.timings();
+  const Timings t = timings_of(stepper.moving());
   const double n_steps = a.steps;
   double largest[] = {processor_seconds() - processor_before,
                       t.bonds - before.bonds + t.contacts - before.contacts + t.search - before.search + t.integration -
@@ -80,7 +80,7 @@ void run(const Arguments& a, const Ranks& ranks) {
       n_nodes / wall, 1e3 * largest[0] / n_steps, 1e3 * largest[1] / n_steps,
       1e3 * (t.search - before.search) / n_steps, 1e3 * largest[2] / n_steps, 1e3 * largest[3] / n_steps,
       largest[4] / n_steps, largest[5] / n_steps, static_cast<double>(t.halo_builds - before.halo_builds) / n_steps,
-      static_cast<double>(stepper.bytes()) / (n_nodes / ranks.size()));
+      static_cast<double>(bytes_of(stepper.moving())) / (n_nodes / ranks.size()));
   for (std::size_t k = 0; k < a.count.size(); ++k) {
     const HaloCount c = count_halo(stepper, a.count[k]);
     fmt::print(

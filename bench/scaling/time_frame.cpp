@@ -3,6 +3,7 @@
 
 #include "bench/scaling/processor_time.h"
 #include "bpm/app/measure/frame_measures.h"
+#include "bpm/dynamics/take_snapshot.h"
 
 #include <algorithm>
 #include <chrono>
@@ -35,7 +36,7 @@ template <class Work> std::string best_of(int n, const Ranks& ranks, const Work&
 std::string time_frame(const Stepper& stepper, const Ranks& ranks, int n_frames) {
   const Topology topology = stepper.packing().topology(false);
   const Simulation::Parts parts = {.positions_on_all_ranks = true};
-  const Snapshot snapshot = stepper.snapshot(parts);
+  const Snapshot snapshot = take_snapshot(stepper.moving(), parts);
   const auto measured = [&](const std::vector<std::string>& names) {
     MeasurePlan plan;
     plan.kinds = measure_kinds(names);
@@ -48,7 +49,8 @@ std::string time_frame(const Stepper& stepper, const Ranks& ranks, int n_frames)
   for (const char* name : {"packing-fraction", "shape", "scattering", "contacts"}) {
     json += fmt::format(", \"{}\": {}", name, measured({name}));
   }
-  return json + fmt::format(", \"snapshot\": {}}}", best_of(n_frames, ranks, [&] { stepper.snapshot(parts); }));
+  return json +
+         fmt::format(", \"snapshot\": {}}}", best_of(n_frames, ranks, [&] { take_snapshot(stepper.moving(), parts); }));
 }
 
 } // namespace boba::bench

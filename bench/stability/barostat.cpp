@@ -4,6 +4,7 @@
 #include "bpm/dynamics/barostat.h"
 
 #include "bench/stability/cases.h"
+#include "bpm/dynamics/elastic_probe.h"
 #include "bpm/dynamics/simulation.h"
 
 #include <cmath>
@@ -95,7 +96,8 @@ void under_shear(const Folder& folder, const Packing& packing, double pressure) 
     for (const double asked : {0.0, 1e-5, 1e-4, 1e-3, 5e-3, 0.02, 0.05, 0.2, 1.0, 5.0}) {
       Stepper stepper(packing, {}, {.dt = 0.1});
       stepper.start();
-      const double modulus = stepper.affine_bulk_modulus(), crossing = stepper.sound_crossing(modulus);
+      const double modulus = affine_bulk_modulus(stepper.moving()),
+                   crossing = sound_crossing(stepper.moving(), modulus);
       const Barostat barostat{.pressure = pressure, .gain = asked > 0.0 ? std::optional(asked) : std::nullopt};
       const double gain = barostat_gain(barostat, {modulus, crossing, rate});
       Deviation d{NAN, NAN, NAN};

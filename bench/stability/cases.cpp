@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/stability/cases.h"
 
+#include "bpm/dynamics/take_snapshot.h"
 #include "bpm/grain/random.h"
 #include "bpm/grain/template_cache.h"
 #include "bpm/packing/insertion.h"
@@ -91,7 +92,7 @@ Packing compressed(const PackingSpec& spec) {
     stepper.advance(driver.may_end(stepper) ? Virial::full : Virial::trace);
     stepper.move_cell(driver.update(stepper));
   }
-  return packing_of(loose, stepper.snapshot({}));
+  return packing_of(loose, take_snapshot(stepper.moving(), {}));
 }
 
 OutputFile csv(const Folder& folder, const std::string& name, const std::string& header) {

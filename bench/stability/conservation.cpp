@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Momentum and angular momentum of a free, turning, vibrating grain over a million steps.
 #include "bench/stability/cases.h"
+#include "bpm/dynamics/take_snapshot.h"
 
 #include <cmath>
 
@@ -48,12 +49,12 @@ void conservation(const Folder& folder) {
     Stepper stepper(packing, Material{.gamma = c.gamma}, {.dt = 0.1, .precision = c.precision});
     stepper.start();
     // Full-step momenta: those of the half step turn with the forces.
-    const Momenta begin = momenta(stepper.snapshot({.velocity = true}));
+    const Momenta begin = momenta(take_snapshot(stepper.moving(), {.velocity = true}));
     for (int step = 1; step <= 1000000; ++step) {
       const bool look = step % 20000 == 0 || (step < 20000 && step % 1000 == 0);
       stepper.advance(look ? Virial::full : Virial::none);
       if (look) {
-        const Momenta now = momenta(stepper.snapshot({.velocity = true}));
+        const Momenta now = momenta(take_snapshot(stepper.moving(), {.velocity = true}));
         file.print("{},{},{},{},{},{:.3e},{:.3e},{:.6e}\n", grain->n_nodes(), c.alpha, c.gamma,
                    c.precision == Precision::full ? "double" : "mixed", step,
                    (now.linear - begin.linear).norm() / begin.linear.norm(),

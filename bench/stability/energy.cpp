@@ -3,6 +3,7 @@
 #include "bench/stability/cases.h"
 #include "bench/stability/ledger.h"
 #include "bpm/dynamics/simulation.h"
+#include "bpm/dynamics/take_snapshot.h"
 
 #include <cmath>
 #include <functional>
@@ -63,11 +64,11 @@ public:
 private:
   Powers sample(const Matrix3& gradient) {
     if (stepper_.step() == 0) {
-      Snapshot at_rest = stepper_.snapshot({});
+      Snapshot at_rest = take_snapshot(stepper_.moving(), {});
       at_rest.velocity.assign(at_rest.position.size(), Vector3::Zero());
       return ledger_.at(at_rest, gradient);
     }
-    return ledger_.at(stepper_.snapshot({.velocity = true}), gradient);
+    return ledger_.at(take_snapshot(stepper_.moving(), {.velocity = true}), gradient);
   }
 
   static void add(Account& account, const Powers& a, const Powers& b, double time) {

@@ -2,6 +2,7 @@
 // Rounding: how an error grows against a more precise twin, and what ten million steps at rest do.
 #include "bench/stability/cases.h"
 #include "bench/stability/twin.h"
+#include "bpm/dynamics/take_snapshot.h"
 
 #include <cmath>
 
@@ -47,7 +48,8 @@ void error_growth(const Folder& folder) {
       twin.advance();
       if (step % 100 == 0 || step < 10) {
         file.print("{},{},double,{},{:.3e}\n", c.alpha, c.gamma, full.time(), distance(full.snapshot({}), twin));
-        file.print("{},{},mixed,{},{:.3e}\n", c.alpha, c.gamma, full.time(), distance(mixed.snapshot({}), twin));
+        file.print("{},{},mixed,{},{:.3e}\n", c.alpha, c.gamma, full.time(),
+                   distance(take_snapshot(mixed.moving(), {}), twin));
       }
     }
     file.flush();
@@ -102,7 +104,7 @@ void rest_in(const Folder& folder, const std::string& name, Precision precision)
     if (!look) {
       continue;
     }
-    const Snapshot now = stepper.snapshot({});
+    const Snapshot now = take_snapshot(stepper.moving(), {});
     first = step == 10000 ? now : first; // by then the last motion of the compression has died away
     double moved = 0.0, centres = 0.0;
     for (std::size_t i = 0; i < first.position.size(); ++i) {

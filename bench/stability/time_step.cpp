@@ -3,6 +3,7 @@
 #include "bench/stability/cases.h"
 #include "bpm/dynamics/simulation.h"
 #include "bpm/dynamics/stable_step.h"
+#include "bpm/dynamics/take_snapshot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +75,7 @@ void lone_grains(const Folder& folder) {
 std::vector<Vector3> forces_on(const Packing& packing, const Material& material) {
   Stepper stepper(packing, material, {});
   stepper.evaluate_only();
-  return stepper.snapshot({.force = true}).force;
+  return take_snapshot(stepper.moving(), {.force = true}).force;
 }
 
 /// The same power iteration as `stable_step`, with the engine's forces differentiated about a packing's present state:
@@ -126,7 +127,7 @@ double step_of_packing(const Packing& packing, const Material& material) {
 double largest_overlap(const Packing& packing) {
   Stepper stepper(packing, {}, {});
   stepper.evaluate_only();
-  return stepper.totals().largest_overlap;
+  return totals_of(stepper.moving()).largest_overlap;
 }
 
 /// Runs a damped packing in its cell until what grows from a whisper can be told from what is left of its motion.
@@ -136,7 +137,7 @@ Packing settled(const Packing& packing) {
   for (int step = 1; step <= 400000; ++step) {
     stepper.advance(step % 100 == 0 ? Virial::trace : Virial::none);
     if (step % 100 == 0 && stepper.kinetic_energy() < 1e-22) {
-      return packing_of(packing, stepper.snapshot({}));
+      return packing_of(packing, take_snapshot(stepper.moving(), {}));
     }
   }
   throw std::runtime_error("a packing does not come to rest");

@@ -4,6 +4,7 @@
 #include "bpm/app/progress_display.h"
 #include "bpm/dynamics/simulation.h"
 
+#include <cmath>
 #include <fmt/format.h>
 
 namespace boba {
@@ -17,7 +18,10 @@ void StageSummary::begin(const Simulation& simulation) {
 void StageSummary::add(const Simulation& simulation, double share_done) {
   if (share_done >= 0.5) {
     n_ += 1.0;
-    mu_ += simulation.totals().mu();
+    if (const double mu = simulation.totals().mu(); std::isfinite(mu)) {
+      mu_ += mu;
+      n_mu_ += 1.0;
+    }
     pressure_ += simulation.totals().pressure;
     phi_ += numbers_.phi_reference(simulation.box());
   }
@@ -33,7 +37,7 @@ std::string StageSummary::text(const Simulation& simulation, const std::string& 
   const double pressure = sheared ? pressure_ / n_ : simulation.totals().pressure;
   const double phi = sheared ? phi_ / n_ : numbers_.phi_reference(simulation.box());
   if (sheared) {
-    text += fmt::format(" strain {:.4g}; means of its second half: mu {:.3f},", strain, mu_ / n_);
+    text += fmt::format(" strain {:.4g}; means of its second half: mu {:.3f},", strain, mu_ / n_mu_);
   }
   text += numbers_.modulus ? fmt::format(" P~ {:.4g},", numbers_.normalised(pressure)) : "";
   text += fmt::format(" P {:.4g} k/d, phi_reference {:.4f},", pressure, phi);

@@ -26,7 +26,7 @@ private:
   Clock::time_point begin_ = Clock::now();
   std::int64_t first_step_ = 0;
   double first_strain_ = 0.0;
-  double n_ = 0.0, mu_ = 0.0, pressure_ = 0.0, phi_ = 0.0;
+  double n_ = 0.0, n_mu_ = 0.0, mu_ = 0.0, pressure_ = 0.0, phi_ = 0.0;
 };
 
 } // namespace boba

@@ -67,7 +67,7 @@ void TableObserver::observe(const Simulation& simulation, const StageProgress& p
       numbers_.phi_reference(box),
       totals.pressure,
       known(numbers_.normalised(totals.pressure)),
-      totals.mu(),
+      known(totals.mu()),
       known(numbers_.inertial_number(progress.shear_rate, totals.pressure)),
       totals.kinetic_energy,
       totals.elastic_energy,

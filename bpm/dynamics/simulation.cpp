@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/dynamics/simulation.h"
 
-#include "bpm/dynamics/blow_up.h"
+#include "bpm/dynamics/blow_up_checks.h"
+#include "bpm/dynamics/grain_migration.h"
+#include "bpm/dynamics/motion_archive.h"
+#include "bpm/dynamics/scoped_threads.h"
 #include "bpm/dynamics/share_state.h"
 #include "bpm/dynamics/stage_driver.h"
 #include "bpm/dynamics/stepper.h"
+#include "bpm/dynamics/take_snapshot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,6 +46,7 @@ struct Simulation::Impl {
       : stepper(std::move(packing), material, options) {}
 
   Stepper stepper;
+  LoadBalance load_balance;
   Totals totals;
   int stage_index = 0;
   StageDriver* driver = nullptr;             ///< of the stage that `run` is in
@@ -77,12 +82,14 @@ struct Simulation::Impl {
     const Virial virial = full ? Virial::full : driver->needs_pressure() || look ? Virial::trace : Virial::none;
     stepper.advance(virial);
     if (look) {
-      stepper.ranks().collectively([&] { stepper.check_alternation(); });
+      stepper.ranks().collectively([&] { check_alternation(stepper.moving()); });
     }
     stepper.move_cell(driver->update(stepper));
-    check_bonds();
+    if (stepper.step() % stretch_interval == 0) {
+      check_bonds(stepper.moving());
+    }
     if (full) {
-      totals = stepper.totals();
+      totals = totals_of(stepper.moving());
     }
     show(wanting, self);
     balance();
@@ -98,17 +105,8 @@ struct Simulation::Impl {
   void balance() {
     const double now = stepper.agreement().seconds();
     if (stepper.ranks().is_distributed() && now - last_balance >= stepper.options().rebalance_seconds) {
-      stepper.rebalance();
+      load_balance.rebalance(stepper.moving());
       last_balance = now;
-    }
-  }
-
-  void check_bonds() const {
-    if (stepper.step() % stretch_interval == 0) {
-      const ForceField::Stretch stretch = stepper.largest_stretch();
-      if (!(stretch.ratio <= largest_bond_stretch)) {
-        throw BlowUp(describe_stretched_bond(stretch, stepper.step(), stepper.options().dt));
-      }
     }
   }
 
@@ -120,7 +118,7 @@ struct Simulation::Impl {
     }
     if (!stepper.started()) {
       stepper.start();
-      totals = stepper.totals();
+      totals = totals_of(stepper.moving());
     }
     driver->begin(stepper);
     show(observers, self);
@@ -154,6 +152,7 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 RunOutcome Simulation::run(int stage_index, StageDriver& driver, std::span<Observer* const> observers,
                            const StopRequest& stop) {
+  const ScopedThreads threads(impl_->stepper.options().threads);
   impl_->stage_index = stage_index;
   impl_->driver = &driver;
   const std::unique_ptr<StageDriver*, void (*)(StageDriver**)> in_use(&impl_->driver,
@@ -166,7 +165,7 @@ void Simulation::evaluate() {
     throw std::logic_error("simulation: evaluate() looks at a state that has not begun to move");
   }
   impl_->stepper.evaluate_only();
-  impl_->totals = impl_->stepper.totals();
+  impl_->totals = totals_of(impl_->stepper.moving());
 }
 
 std::int64_t Simulation::step() const {
@@ -191,19 +190,19 @@ const Totals& Simulation::totals() const {
   return impl_->totals;
 }
 Timings Simulation::timings() const {
-  return impl_->stepper.timings();
+  return timings_of(impl_->stepper.moving());
 }
 std::string Simulation::instruction_set() const {
   return impl_->stepper.forces().kernel_table().name;
 }
 Snapshot Simulation::snapshot(Parts parts) const {
-  return impl_->stepper.snapshot(parts);
+  return take_snapshot(impl_->stepper.moving(), parts);
 }
 std::array<double, 2> Simulation::end_forces() const {
-  return impl_->stepper.end_forces();
+  return impl_->stepper.moving().ends.forces();
 }
 double Simulation::end_gap() const {
-  return impl_->stepper.end_gap();
+  return impl_->stepper.moving().ends.gap();
 }
 int Simulation::stage_index() const {
   return impl_->stage_index;
@@ -215,7 +214,7 @@ std::span<const int> Simulation::own_grains() const {
 
 SavedState Simulation::save() const {
   SavedState saved;
-  impl_->stepper.save(saved);
+  save_motion(impl_->stepper.moving(), saved);
   saved.integer["stage"] = {impl_->stage_index, impl_->driver != nullptr || impl_->stopped_stage ? 1 : 0};
   const Totals& totals = impl_->totals;
   saved.real["totals"] = {totals.pressure, totals.kinetic_energy, totals.elastic_energy, totals.largest_overlap};
@@ -247,10 +246,11 @@ void Simulation::restore(const SavedState& of_root) {
   const SavedState of_all = ranks().is_distributed() ? shared(of_root, ranks()) : SavedState{};
   const SavedState& state = ranks().is_distributed() ? of_all : of_root;
   try {
-    impl_->stepper.restore(state);
+    restore_motion(impl_->stepper.moving(), state);
     impl_->stage_index = static_cast<int>(state.integer.at("stage").at(0));
     const std::vector<double>& totals = state.real.at("totals");
     impl_->totals.pressure = totals.at(0);
+    impl_->totals.least_pressure = least_pressure(impl_->stepper.options().precision);
     impl_->totals.kinetic_energy = totals.at(1);
     impl_->totals.elastic_energy = totals.at(2);
     impl_->totals.largest_overlap = totals.at(3);

@@ -9,7 +9,9 @@
 #include "bpm/parallel/ranks.h"
 
 #include <array>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -37,7 +39,11 @@ struct Totals {
   double kinetic_energy = 0.0;    ///< k d^2, full-step velocities
   double elastic_energy = 0.0;    ///< k d^2, pairwise part of bonds and contacts (the many-body term has no energy)
   double largest_overlap = 0.0;   ///< d, over all contacts
-  double mu() const { return pressure != 0.0 ? stress[3] / pressure : 0.0; }
+  double least_pressure = 1e-12;  ///< k/d; a pressure below it cannot be told from rounding
+  /// Shear stress over pressure; not a number where the pressure cannot be told from rounding.
+  double mu() const {
+    return std::abs(pressure) > least_pressure ? stress[3] / pressure : std::numeric_limits<double>::quiet_NaN();
+  }
 };
 
 /// Seconds spent in each part of the steps so far, for the benchmark and the log.

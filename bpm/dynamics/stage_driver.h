@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/dynamics/moving_cell.h"
 #include "bpm/dynamics/observer.h"
-#include "bpm/dynamics/stepper.h"
+#include "bpm/dynamics/simulation.h"
 
 #include <cstdint>
 #include <string>
 
 namespace boba {
+
+class Stepper;
 
 /// What a stage does around each step; one class per stage (bpm/stages). Simulation::run calls it.
 ///

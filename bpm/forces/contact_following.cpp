@@ -33,30 +33,30 @@ bool ContactList::follows(int grain, std::int32_t node) const {
   return std::binary_search(grains_[grain].followed.begin(), grains_[grain].followed.end(), node);
 }
 
-void ContactList::note_brisk(int g, std::int32_t node) {
+void ContactList::note_fast_node(int g, std::int32_t node) {
   TrackedGrain& grain = grains_[g];
-  if (grain.brisk.size() < records_per_node * (most_followed(layout_.n_nodes(g)) + 1)) {
-    grain.brisk.push_back(node);
+  if (grain.fast.size() < records_per_node * (most_followed(layout_.n_nodes(g)) + 1)) {
+    grain.fast.push_back(node);
   }
 }
 
 /// Chooses the nodes of a grain that are followed until the next update, and finds out where they are.
 void ContactList::follow(int g, const LaneState& state) {
   TrackedGrain& grain = grains_[g];
-  std::sort(grain.brisk.begin(), grain.brisk.end());
-  grain.brisk.erase(std::unique(grain.brisk.begin(), grain.brisk.end()), grain.brisk.end());
-  std::vector<std::int32_t> nodes = grain.brisk;
+  std::sort(grain.fast.begin(), grain.fast.end());
+  grain.fast.erase(std::unique(grain.fast.begin(), grain.fast.end()), grain.fast.end());
+  std::vector<std::int32_t> nodes = grain.fast;
   std::vector<int> left(nodes.size(), updates_followed);
   for (std::size_t k = 0; k < grain.followed.size(); ++k) {
-    if (grain.updates_left[k] > 1 && !std::binary_search(grain.brisk.begin(), grain.brisk.end(), grain.followed[k])) {
+    if (grain.updates_left[k] > 1 && !std::binary_search(grain.fast.begin(), grain.fast.end(), grain.followed[k])) {
       const auto at = std::lower_bound(nodes.begin(), nodes.end(), grain.followed[k]);
       left.insert(left.begin() + (at - nodes.begin()), grain.updates_left[k] - 1);
       nodes.insert(at, grain.followed[k]);
     }
   }
-  grain.brisk.clear();
+  grain.fast.clear();
   if (nodes.size() > most_followed(layout_.n_nodes(g))) {
-    grain.too_brisk = true;
+    grain.too_many_fast = true;
     nodes.clear();
     left.clear();
   }
@@ -70,28 +70,28 @@ void ContactList::follow(int g, const LaneState& state) {
 }
 
 /// Sets what counts as far so that a few nodes in a thousand are followed.
-void ContactList::choose_brisk_motion() {
+void ContactList::choose_fast_motion() {
   double followed = 0.0, nodes = 0.0;
   for (const int g : layout_.grains()) {
-    followed += grains_[g].too_brisk ? layout_.n_nodes(g) : static_cast<double>(grains_[g].followed.size());
+    followed += grains_[g].too_many_fast ? layout_.n_nodes(g) : static_cast<double>(grains_[g].followed.size());
     nodes += layout_.n_nodes(g);
-    grains_[g].too_brisk = false;
+    grains_[g].too_many_fast = false;
   }
   if (followed > many_followed * nodes) {
-    brisk_motion_ *= adjustment;
+    fast_motion_ *= adjustment;
   } else if (followed < few_followed * nodes) {
-    brisk_motion_ = std::max(brisk_motion_ / adjustment, 0.5 * reserve() / longest_stay);
+    fast_motion_ = std::max(fast_motion_ / adjustment, 0.5 * reserve() / longest_stay);
   }
 }
 
 /// Distance that followed nodes keep from all that they are not listed with: they were looked up from where they are
-/// with the whole reach, and others may stray from their places.
+/// with the whole reach, and others may deviate from their places.
 double ContactList::followed_guarantee() const {
-  double stray = 0.0;
+  double deviation = 0.0;
   for (const TrackedGrain& grain : grains_) {
-    stray = std::max(stray, grain.stray);
+    deviation = std::max(deviation, grain.deviation);
   }
-  return reach_between() - stray;
+  return reach_between() - deviation;
 }
 
 void ContactList::add_followed(ContactPair& pair, const Box& box, const NetworkData& network) {
@@ -100,7 +100,7 @@ void ContactList::add_followed(ContactPair& pair, const Box& box, const NetworkD
   if (pair.followed.empty()) {
     return;
   }
-  strike_bonded(pair, pair.followed, network);
+  remove_bonded(pair, pair.followed, network);
   sort_pairs(pair.followed, layout_.n_nodes(pair.a));
   thread_local NodePairs found;
   found.assign(pair.followed.begin(), pair.followed.end());

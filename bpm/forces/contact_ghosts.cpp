@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains of other ranks near ours. Their owners follow them; what they know of frames, places and strays comes here
+// Grains of other ranks near ours. Their owners follow them; what they know of frames, places and deviations comes here
 // whenever the grains are looked at, so that pairs are searched and kept by the same rules on both sides.
 #include "bpm/forces/contact_list.h"
 
@@ -8,21 +8,21 @@
 
 namespace boba {
 
-namespace {
-
 /// What a rank must know of a grain that it does not own. Its owner's records of places: first those of nodes that
 /// moved, then of those that are followed by themselves, then, where somebody needs them, all.
 struct GhostRecord {
   GrainFrame frame;
   Bounds bounds;
-  double stray;
-  std::int32_t first_record, n_moved, n_followed, anew;
+  double deviation;
+  std::int32_t first_record, n_moved, n_followed, all_noted;
 };
 
 struct PlaceRecord {
   std::int32_t node;
   float x[3];
 };
+
+namespace {
 
 PlaceRecord record_of(std::int32_t node, const Vector3& place) {
   return {node, {static_cast<float>(place[0]), static_cast<float>(place[1]), static_cast<float>(place[2])}};
@@ -35,8 +35,16 @@ Vector3 place_of(const PlaceRecord& record) {
 } // namespace
 
 void ContactList::share_bounds(std::vector<Bounds>& bounds) const {
-  static_assert(sizeof(Bounds) == 6 * sizeof(double));
-  distribution_.ranks->share_rows({bounds.data()->low.data(), 6 * bounds.size()}, 6, distribution_.ownership);
+  std::vector<double> rows;
+  for (const Bounds& of_grain : bounds) {
+    rows.insert(rows.end(), of_grain.low.begin(), of_grain.low.end());
+    rows.insert(rows.end(), of_grain.high.begin(), of_grain.high.end());
+  }
+  distribution_.ranks->share_rows(rows, 6, distribution_.ownership);
+  for (std::size_t g = 0; g < bounds.size(); ++g) {
+    bounds[g].low = Eigen::Map<const Vector3>(&rows[6 * g]);
+    bounds[g].high = Eigen::Map<const Vector3>(&rows[6 * g + 3]);
+  }
 }
 
 /// Finds out which grains of other ranks stand in our pairs, and which of ours other ranks know nothing of yet.
@@ -79,35 +87,43 @@ void ContactList::find_ghosts() {
   }
 }
 
-/// Brings frames, strays and places of the ghosts up to what their owners have just found.
-void ContactList::follow_ghosts() {
-  if (!distribution_.is_distributed()) {
-    return;
-  }
-  std::vector<GhostRecord> own, ghosts(ghosts_.size());
-  std::vector<PlaceRecord> sent, received;
+/// What the other ranks are told of this rank's grains: a record for each, and the places that the records name.
+struct ContactList::GhostMessage {
+  std::vector<GhostRecord> grains;
+  std::vector<PlaceRecord> places;
+};
+
+ContactList::GhostMessage ContactList::message_of_own_grains() const {
+  GhostMessage message;
+  std::vector<PlaceRecord>& places = message.places;
   for (std::size_t k = 0; k < layout_.grains().size(); ++k) {
     const int g = layout_.grains()[k];
     const TrackedGrain& grain = grains_[g];
-    own.push_back({grain.frame, grain.grid.bounds(), grain.stray, static_cast<std::int32_t>(sent.size()),
-                   static_cast<std::int32_t>(grain.moved.size()), static_cast<std::int32_t>(grain.followed.size()),
-                   grain.anew ? 1 : 0});
+    message.grains.push_back({grain.frame, grain.grid.bounds(), grain.deviation,
+                              static_cast<std::int32_t>(places.size()), static_cast<std::int32_t>(grain.moved.size()),
+                              static_cast<std::int32_t>(grain.followed.size()), grain.all_noted ? 1 : 0});
     for (std::size_t m = 0; m < grain.moved.size(); ++m) {
-      sent.push_back(record_of(grain.moved[m], grain.moved_to[m]));
+      places.push_back(record_of(grain.moved[m], grain.moved_to[m]));
     }
     for (std::size_t m = 0; m < grain.followed.size(); ++m) {
-      sent.push_back(record_of(grain.followed[m], grain.followed_at[m]));
+      places.push_back(record_of(grain.followed[m], grain.followed_at[m]));
     }
-    for (int node = 0; (grain.anew || wanted_[k] != 0) && node < layout_.n_nodes(g); ++node) {
-      sent.push_back(record_of(node, place(g, node)));
+    for (int node = 0; (grain.all_noted || wanted_[k] != 0) && node < layout_.n_nodes(g); ++node) {
+      places.push_back(record_of(node, place(g, node)));
     }
   }
-  ghost_forest_->copy(sizeof(GhostRecord), own.data(), ghosts.data());
+  return message;
+}
 
+/// Of the places that the owners have sent records of, those that this rank needs: grain by grain.
+ContactList::GhostMessage ContactList::message_about_ghosts(const GhostMessage& own) const {
+  GhostMessage message;
+  message.grains.resize(ghosts_.size());
+  ghost_forest_->copy(sizeof(GhostRecord), own.grains.data(), message.grains.data());
   std::vector<RootPlace> from;
   for (std::size_t k = 0; k < ghosts_.size(); ++k) {
-    const GhostRecord& record = ghosts[k];
-    const bool all = record.anew != 0 || fresh_[k] != 0;
+    const GhostRecord& record = message.grains[k];
+    const bool all = record.all_noted != 0 || fresh_[k] != 0;
     const int first = record.first_record + (all ? record.n_moved : 0);
     const int n = record.n_followed + (all ? layout_.n_nodes(ghosts_[k]) : record.n_moved);
     for (int i = 0; i < n; ++i) {
@@ -115,39 +131,52 @@ void ContactList::follow_ghosts() {
     }
   }
   if (distribution_.ranks->any(!from.empty())) {
-    received.resize(from.size());
-    make_star_forest(static_cast<int>(sent.size()), from)->copy(sizeof(PlaceRecord), sent.data(), received.data());
+    message.places.resize(from.size());
+    make_star_forest(static_cast<int>(own.places.size()), from)
+        ->copy(sizeof(PlaceRecord), own.places.data(), message.places.data());
   }
+  return message;
+}
 
-  std::size_t next = 0;
-  std::vector<Vector3> places;
+/// Takes over what its owner says of one ghost; returns the record of a place behind its last one.
+const PlaceRecord* ContactList::take_ghost(int ghost, const GhostRecord& record, bool all, const PlaceRecord* next) {
+  TrackedGrain& grain = grains_[ghost];
+  grain.frame = record.frame;
+  grain.deviation = record.deviation;
+  for (int m = 0; !all && m < record.n_moved; ++m, ++next) {
+    grain.moved.push_back(next->node);
+    grain.moved_to.push_back(place_of(*next));
+    grain.grid.insert(next->node, grain.moved_to.back());
+  }
+  grain.followed.clear();
+  grain.followed_at.clear();
+  for (int m = 0; m < record.n_followed; ++m, ++next) {
+    grain.followed.push_back(next->node);
+    grain.followed_at.push_back(place_of(*next));
+  }
+  if (all) {
+    std::vector<Vector3> places;
+    Bounds bounds = record.bounds; // of the places as first noted: some may have moved out of them, or in
+    for (int node = 0; node < layout_.n_nodes(ghost); ++node, ++next) {
+      places.push_back(place_of(*next));
+      bounds.include(places.back());
+    }
+    grain.grid = GrainGrid(places, bounds, reach_between() / (1.0 - largest_shortening));
+    grain.all_noted = true;
+  }
+  return next;
+}
+
+/// Brings frames, deviations and places of the ghosts up to what their owners have just found.
+void ContactList::follow_ghosts() {
+  if (!distribution_.is_distributed()) {
+    return;
+  }
+  const GhostMessage message = message_about_ghosts(message_of_own_grains());
+  const PlaceRecord* next = message.places.data();
   for (std::size_t k = 0; k < ghosts_.size(); ++k) {
-    const GhostRecord& record = ghosts[k];
-    TrackedGrain& grain = grains_[ghosts_[k]];
-    grain.frame = record.frame;
-    grain.stray = record.stray;
-    const bool all = record.anew != 0 || fresh_[k] != 0;
-    for (int m = 0; !all && m < record.n_moved; ++m, ++next) {
-      grain.moved.push_back(received[next].node);
-      grain.moved_to.push_back(place_of(received[next]));
-      grain.grid.insert(received[next].node, grain.moved_to.back());
-    }
-    grain.followed.clear();
-    grain.followed_at.clear();
-    for (int m = 0; m < record.n_followed; ++m, ++next) {
-      grain.followed.push_back(received[next].node);
-      grain.followed_at.push_back(place_of(received[next]));
-    }
-    if (all) {
-      places.clear();
-      Bounds bounds = record.bounds; // of the places as first noted: some may have moved out of them, or in
-      for (int node = 0; node < layout_.n_nodes(ghosts_[k]); ++node) {
-        places.push_back(place_of(received[next++]));
-        bounds.include(places.back());
-      }
-      grain.grid = GrainGrid(places, bounds, reach_between() / (1.0 - largest_shortening));
-      grain.anew = true;
-    }
+    const GhostRecord& record = message.grains[k];
+    next = take_ghost(ghosts_[k], record, record.all_noted != 0 || fresh_[k] != 0, next);
   }
   std::fill(fresh_.begin(), fresh_.end(), 0);
   std::fill(wanted_.begin(), wanted_.end(), 0);

@@ -28,7 +28,7 @@ Vector3 lattice_vector(const Box& box, const ImageVector& n) {
 ContactList::ContactList(const LaneLayout& layout, const kernels::KernelTable& table, double diameter, double skin,
                          const Distribution& distribution)
     : layout_(layout), table_(table), diameter_(diameter), skin_(skin), skin_between_(between_share * skin),
-      brisk_motion_(0.1 * reserve()), distribution_(distribution) {
+      fast_motion_(0.1 * reserve()), distribution_(distribution) {
   layout_changed();
   for (const Block& block : layout.blocks()) {
     if (static_cast<std::int64_t>(block.n_nodes) * block.n_lanes > std::numeric_limits<std::int32_t>::max()) {
@@ -56,14 +56,14 @@ void ContactList::layout_changed() {
 }
 
 /// Distance that two nodes keep at least which were `distance` apart, once the cell has been mapped and each node has
-/// moved by `crept` beyond that.
-double ContactList::kept_distance(double distance, const Matrix3& cell, double crept) {
-  return (1.0 - (cell - Matrix3::Identity()).norm()) * distance - 2.0 * crept;
+/// moved by `moved` beyond that.
+double ContactList::kept_distance(double distance, const Matrix3& cell, double moved) {
+  return (1.0 - (cell - Matrix3::Identity()).norm()) * distance - 2.0 * moved;
 }
 
 bool ContactList::update(const LaneState& state, const Box& box, const Networks& network_of_grain) {
-  if (built_ && kept_distance(guaranteed_, cell_since_tracking_, crept_) >= diameter_ &&
-      kept_distance(followed_guaranteed_, cell_since_tracking_, crept_followed_) >= diameter_) {
+  if (built_ && kept_distance(guaranteed_, cell_since_tracking_, motion_since_update_) >= diameter_ &&
+      kept_distance(followed_guaranteed_, cell_since_tracking_, motion_of_followed_) >= diameter_) {
     return false;
   }
   track(state);
@@ -103,13 +103,13 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
     pair.changed = false;
   }
   for (const int g : layout_.grains()) {
-    counts_.grains += grains_[g].anew ? 1 : 0;
+    counts_.grains += grains_[g].all_noted ? 1 : 0;
     counts_.nodes += static_cast<std::int64_t>(grains_[g].moved.size());
     counts_.followed += static_cast<std::int64_t>(grains_[g].followed.size());
   }
-  choose_brisk_motion();
+  choose_fast_motion();
   for (TrackedGrain& grain : grains_) {
-    grain.anew = false;
+    grain.all_noted = false;
     grain.moved.clear();
     grain.moved_to.clear();
   }
@@ -117,8 +117,8 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
   distribution_.ranks->largest(lost);
   followed_guaranteed_ = -lost[0];
   guaranteed_ = -std::max(lost[0], lost[1]);
-  crept_ = 0.0;
-  crept_followed_ = 0.0;
+  motion_since_update_ = 0.0;
+  motion_of_followed_ = 0.0;
   cell_since_tracking_ = Matrix3::Identity();
   built_ = true;
   return true;
@@ -131,9 +131,9 @@ void ContactList::note_motion(const Matrix3& cell_map, double farthest, double c
     cell_since_near_ = cell_map * cell_since_near_;
     const double change = (cell_map - Matrix3::Identity()).norm(), stretch = 1.0 + change;
     last_approach_ = change * diameter_ + 2.0 * common;
-    crept_near_ = crept_near_ * stretch + common;
-    crept_ = crept_ * stretch + common;
-    crept_followed_ = crept_followed_ * stretch + farthest;
+    motion_since_near_ = motion_since_near_ * stretch + common;
+    motion_since_update_ = motion_since_update_ * stretch + common;
+    motion_of_followed_ = motion_of_followed_ * stretch + farthest;
   }
 }
 
@@ -141,11 +141,11 @@ GrainFrame ContactList::second_frame(const ContactPair& pair, const Box& box) co
   return grains_[pair.b].frame.displaced(lattice_vector(box, pair.image));
 }
 
-/// False when places have changed in a way that the pair has to be searched anew: all of a grain's are other ones, or
+/// False when places have changed in a way that the pair has to be searched again: all of a grain's are other ones, or
 /// some have come into the gap that the search has found. (Where there is none, new places are looked up one by one.)
 bool ContactList::search_holds(const ContactPair& pair) const {
   const TrackedGrain &a = grains_[pair.a], &b = grains_[pair.b];
-  if (!pair.searched || a.anew || b.anew) {
+  if (!pair.searched || a.all_noted || b.all_noted) {
     return false;
   }
   const Gap& gap = pair.gap;
@@ -160,7 +160,7 @@ bool ContactList::search_holds(const ContactPair& pair) const {
 
 /// Distance that the pair's unlisted nodes keep at present.
 ///
-/// A pair of nodes at the distance s >= apart when searched is now at least s (1 - e) - R - the two strays,
+/// A pair of nodes at the distance s >= apart when searched is now at least s (1 - e) - R - the two deviations,
 /// with e the shortening of b's frame since then and R the largest relative displacement of the two frames where the
 /// grains meet.
 double ContactList::guarantee(const ContactPair& pair, const Box& box) const {
@@ -168,12 +168,12 @@ double ContactList::guarantee(const ContactPair& pair, const Box& box) const {
   const GrainFrame moved_b = second_frame(pair, box).after(pair.frame_b.inverse());
   const double e = shortening(moved_b.linear);
   if (pair.inside()) {
-    return pair.apart * (1.0 - e) - 2.0 * a.stray;
+    return pair.apart * (1.0 - e) - 2.0 * a.deviation;
   }
   const GrainFrame moved_a = a.frame.after(pair.frame_a.inverse());
   double slid = 0.0;
   pair.zone.for_each_corner([&](const Vector3& x) { slid = std::max(slid, (moved_a(x) - moved_b(x)).norm()); });
-  return pair.apart * (1.0 - e) - slid - a.stray - b.stray;
+  return pair.apart * (1.0 - e) - slid - a.deviation - b.deviation;
 }
 
 /// Radius that finds all nodes closer than the reach in space, where a frame has mapped the places that are searched.
@@ -207,7 +207,7 @@ void ContactList::search(ContactPair& pair, const Box& box, const NetworkData& n
       pair.zone = of_a;
     }
   }
-  strike_bonded(pair, pair.candidates, network);
+  remove_bonded(pair, pair.candidates, network);
   sort_pairs(pair.candidates, layout_.n_nodes(pair.a));
   pair.changed = pair.changed || !pair.candidates.empty();
 }
@@ -266,7 +266,7 @@ void ContactList::add_moved_between(const ContactPair& pair, NodePairs& found) c
 }
 
 /// Strikes out pairs that are bonded across the cell's boundary.
-void ContactList::strike_bonded(const ContactPair& pair, NodePairs& list, const NetworkData& network) {
+void ContactList::remove_bonded(const ContactPair& pair, NodePairs& list, const NetworkData& network) {
   if (pair.a == pair.b && !pair.inside()) {
     const Eigen::Vector3i n(pair.image.a, pair.image.b, pair.image.c);
     std::erase_if(list, [&](const kernels::NodePair& nodes) { return network.bonded_across(nodes.i, nodes.j, n); });
@@ -275,7 +275,7 @@ void ContactList::strike_bonded(const ContactPair& pair, NodePairs& list, const 
 
 /// Adds pairs in any order to the candidates; `found` keeps those that are new.
 void ContactList::add_candidates(ContactPair& pair, NodePairs& found, const NetworkData& network) {
-  strike_bonded(pair, found, network);
+  remove_bonded(pair, found, network);
   insert_pairs(pair.candidates, found);
   pair.changed = pair.changed || !found.empty();
 }
@@ -307,12 +307,12 @@ std::vector<std::int32_t> ContactList::nodes_in(int g, std::vector<kernels::Node
 }
 
 bool ContactList::near_holds() const {
-  return kept_distance(near_reach_, cell_since_near_, crept_near_) >= diameter_;
+  return kept_distance(near_reach_, cell_since_near_, motion_since_near_) >= diameter_;
 }
 
 double ContactList::begin_near() {
   near_reach_ = std::min(guaranteed_, diameter_ + std::max(least_near_margin, near_steps * last_approach_));
-  crept_near_ = 0.0;
+  motion_since_near_ = 0.0;
   cell_since_near_ = Matrix3::Identity();
   return near_reach_;
 }

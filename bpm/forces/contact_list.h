@@ -15,15 +15,18 @@
 
 namespace boba {
 
+struct GhostRecord;
+struct PlaceRecord;
+
 /// Candidate contacts of every pair of grains.
 ///
 /// A grain's nodes are noted once by their places in its frame, an affine map that is fitted to the grain again and
-/// again: what is left is how far a node strays from where the frame puts it. A pair of grains keeps its candidates as
-/// long as the two frames' relative motion where they meet, the strays of both, and what the nodes may have moved since
-/// they were last looked at are less than the skin together. A node that strays far gets a new place and is looked up
-/// once; a pair whose grains have slid past each other is searched anew from the same places; only a grain that has
-/// changed its shape notes all its places anew. The few nodes that move much faster than the rest are followed by
-/// themselves: they are looked up from where they are, with a reach of their own.
+/// again: what is left is how far a node deviates from where the frame puts it. A pair of grains keeps its candidates
+/// as long as the two frames' relative motion where they meet, the deviations of both, and what the nodes may have
+/// moved since they were last looked at are less than the skin together. A node that deviates far gets a new place and
+/// is looked up once; a pair whose grains have slid past each other is searched again from the same places; only a
+/// grain that has changed its shape notes all its places again. The few nodes that move much faster than the rest are
+/// followed by themselves: they are looked up from where they are, with a reach of their own.
 ///
 /// Candidates are sorted by nodes, pairs by grains and image: an order that follows from the state alone.
 /// Since candidates that do not touch add nothing, forces are bit for bit the same whether a pair was searched at this
@@ -43,11 +46,11 @@ public:
   /// and none that is not followed farther than `common`, d.
   void note_motion(const Matrix3& cell_map, double farthest, double common);
   /// What a node may move in a step before the list wants to hear of it, d.
-  double brisk_motion() const { return brisk_motion_; }
+  double fast_motion() const { return fast_motion_; }
   /// True when a node is followed, so that it does not count for note_motion's `common`.
   bool follows(int grain, std::int32_t node) const;
   /// Tells the list of a node that moves farther than that in a step.
-  void note_brisk(int grain, std::int32_t node);
+  void note_fast_node(int grain, std::int32_t node);
   /// The cell's vectors or the state changed in a way that note_motion was not told of.
   void invalidate() { built_ = false; }
   /// The same, and the layout holds other grains than before.
@@ -75,7 +78,7 @@ public:
   const std::vector<int>& ghosts() const { return ghosts_; }
 
   std::int64_t n_candidates() const;
-  /// How often the list was brought up to date, a grain's nodes were noted anew, a pair searched, a single node
+  /// How often the list was brought up to date, a grain's nodes were noted again, a pair searched, a single node
   /// looked up, and one that is followed.
   struct Counts {
     std::int64_t updates = 0, grains = 0, pairs = 0, nodes = 0, followed = 0;
@@ -91,17 +94,17 @@ private:
     bool outgrown = false;                         ///< a place is outside them
     GrainGrid grid;                                ///< over the noted places, new ones inserted
     Matrix3 inverse_moments = Matrix3::Identity(); ///< of sum X (x) X over the nodes as first noted
-    double stray = 0.0;                            ///< largest distance of a node from where the frame puts it, d
+    double deviation = 0.0;                        ///< largest distance of a node from where the frame puts it, d
     std::vector<std::int32_t> moved; ///< nodes with a new place since the pairs were last brought up to date
     std::vector<Vector3> moved_to;   ///< those places
     int n_moved = 0;                 ///< since all were noted
-    bool anew = false;               ///< all were noted since the pairs were last brought up to date
+    bool all_noted = false;          ///< all were noted since the pairs were last brought up to date
     std::vector<std::int32_t> listed, near;
     std::vector<std::int32_t> followed; ///< nodes that are followed by themselves, ascending
     std::vector<int> updates_left;      ///< for which each of them stays so
     std::vector<Vector3> followed_at;   ///< where they were at the last update, seen in the frame
-    std::vector<std::int32_t> brisk;    ///< nodes that moved far in a step since then, as they came
-    bool too_brisk = false;             ///< they were too many for any to be followed
+    std::vector<std::int32_t> fast;     ///< nodes that moved far in a step since then, as they came
+    bool too_many_fast = false;         ///< they were too many for any to be followed
   };
   using Networks = std::vector<const NetworkData*>;
   using NodePairs = std::vector<kernels::NodePair>;
@@ -112,21 +115,21 @@ private:
 
   /// Share of the skin that is left for motion between two looks at the grains.
   static constexpr double reserve_share = 0.3;
-  /// Share of the skin beyond which a node that strays gets a new place.
+  /// Share of the skin beyond which a node that deviates gets a new place.
   static constexpr double far_share = 0.3;
   /// Skin between grains over the skin inside a grain, where nodes are denser and move less.
   static constexpr double between_share = 1.6;
-  /// How far a node with a new place may be outside its grain's bounds before all are noted anew, d.
+  /// How far a node with a new place may be outside its grain's bounds before all are noted again, d.
   double bounds_margin_ = 0.5;
   /// Margin of the list of neighbouring grains, d.
   double neighbour_margin_ = 1.0;
   /// Steps for which near candidates are to hold, and what they are given at least, d.
   static constexpr double near_steps = 24.0, least_near_margin = 0.02;
-  /// Most that a frame may shorten before all is noted anew.
+  /// Most that a frame may shorten before all is noted again.
   static constexpr double largest_shortening = 0.05;
 
   // contact_list.cpp: pairs
-  static double kept_distance(double distance, const Matrix3& cell, double crept);
+  static double kept_distance(double distance, const Matrix3& cell, double moved);
   double radius_in(const GrainFrame& frame) const;
   void search(ContactPair& pair, const Box& box, const NetworkData& network);
   void add_moved(ContactPair& pair, const NetworkData& network);
@@ -135,7 +138,7 @@ private:
   /// Adds the unbonded pairs of a node with those of its grain that are near a place where it is seen.
   static void add_partners_inside(const TrackedGrain& grain, std::int32_t node, const Vector3& place, double radius,
                                   const NetworkData& network, NodePairs& pairs);
-  static void strike_bonded(const ContactPair& pair, NodePairs& list, const NetworkData& network);
+  static void remove_bonded(const ContactPair& pair, NodePairs& list, const NetworkData& network);
   static void add_candidates(ContactPair& pair, NodePairs& found, const NetworkData& network);
   bool search_holds(const ContactPair& pair) const;
   double guarantee(const ContactPair& pair, const Box& box) const;
@@ -150,7 +153,7 @@ private:
 
   // contact_following.cpp: nodes that are followed by themselves
   void follow(int grain, const LaneState& state);
-  void choose_brisk_motion();
+  void choose_fast_motion();
   void add_followed(ContactPair& pair, const Box& box, const NetworkData& network);
   void add_followed_inside(ContactPair& pair, const NetworkData& network) const;
   void add_followed_between(ContactPair& pair, const Box& box) const;
@@ -160,6 +163,10 @@ private:
   void share_bounds(std::vector<Bounds>& bounds) const;
   void find_ghosts();
   void follow_ghosts();
+  struct GhostMessage;
+  GhostMessage message_of_own_grains() const;
+  GhostMessage message_about_ghosts(const GhostMessage& own) const;
+  const PlaceRecord* take_ghost(int ghost, const GhostRecord& record, bool all, const PlaceRecord* next);
 
   // contact_tracking.cpp: grains
   void track(const LaneState& state);
@@ -179,12 +186,13 @@ private:
   /// All pairs of nodes that are not listed were farther apart when the grains were last tracked, d; and those of
   /// followed nodes.
   double guaranteed_ = 0.0, followed_guaranteed_ = 0.0;
-  double crept_ = 0.0;          ///< bound on a node's motion since then beyond the cell's, d, but for followed ones
-  double crept_followed_ = 0.0; ///< the same of any node
-  double brisk_motion_;         ///< d a step
+  double motion_since_update_ =
+      0.0;                          ///< bound on a node's motion since then beyond the cell's, d, but for followed ones
+  double motion_of_followed_ = 0.0; ///< the same of any node
+  double fast_motion_;              ///< d a step
   /// The same for near candidates: their reach, the motion of the cell and of nodes since they were found, and how far
   /// two nodes that touch may have approached each other in the last step, d.
-  double near_reach_ = 0.0, crept_near_ = 0.0, last_approach_ = 0.0;
+  double near_reach_ = 0.0, motion_since_near_ = 0.0, last_approach_ = 0.0;
   Matrix3 cell_since_near_ = Matrix3::Identity();
   AlignedArray<float> place_; ///< X, lane layout, d
   std::vector<TrackedGrain> grains_;

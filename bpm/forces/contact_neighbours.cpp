@@ -14,7 +14,7 @@ void ContactList::find_neighbours(const Box& box) {
   std::vector<Bounds> bounds(n_grains);
   for (const int g : layout_.grains()) {
     TrackedGrain& grain = grains_[g];
-    bounds[g] = grain.grid.bounds().widened(bounds_margin_).mapped(grain.frame).widened(grain.stray);
+    bounds[g] = grain.grid.bounds().widened(bounds_margin_).mapped(grain.frame).widened(grain.deviation);
     grain.neighbour_frame = grain.frame;
     grain.neighbour_bounds = bounds[g];
     grain.outgrown = false;
@@ -74,7 +74,7 @@ double ContactList::neighbour_guarantee(const Box& box) const {
     }
     const GrainFrame carried = with_cell.after(grain.neighbour_frame);
     grain.grid.bounds().widened(bounds_margin_).for_each_corner([&](const Vector3& x) {
-      farthest = std::max(farthest, (grain.frame(x) - carried(x)).norm() + grain.stray);
+      farthest = std::max(farthest, (grain.frame(x) - carried(x)).norm() + grain.deviation);
     });
   }
   farthest = distribution_.ranks->largest(farthest);

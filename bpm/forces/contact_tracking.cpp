@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a contact list follows its grains: frames, places of nodes, and how far they stray.
+// How a contact list follows its grains: frames, places of nodes, and how far nodes deviate from them.
 #include "bpm/forces/contact_list.h"
 #include "bpm/forces/lane_kernels.h"
 
@@ -61,7 +61,7 @@ kernels::LaneFrames ContactList::fit_frames(int b, const LaneState& state) {
   });
   kernels::LaneFrames frames{};
   for (int lane = 0; lane < block.n_lanes; ++lane) {
-    frames.threshold2[lane] = 1e300; // an idle lane never strays
+    frames.threshold2[lane] = 1e300; // an idle lane never deviates
     const int g = block.grain[lane];
     if (g < 0) {
       continue;
@@ -102,7 +102,7 @@ void ContactList::track_block(int b, const LaneState& state) {
   for (int lane = 0; lane < block.n_lanes; ++lane) {
     const int g = block.grain[lane];
     if (g >= 0) {
-      grains_[g].stray = std::sqrt(largest2[lane]) + rounding;
+      grains_[g].deviation = std::sqrt(largest2[lane]) + rounding;
       if (out_of_shape(grains_[g], block.n_nodes) || !note_moved(g, state)) {
         note_all(g, state);
       }
@@ -112,12 +112,12 @@ void ContactList::track_block(int b, const LaneState& state) {
 
 bool ContactList::out_of_shape(const TrackedGrain& grain, int n_nodes) const {
   const double e = shortening(grain.frame.linear);
-  return !(e <= largest_shortening) || !(reach_inside() * (1.0 - e) - 2.0 * grain.stray >= diameter_ + reserve()) ||
+  return !(e <= largest_shortening) || !(reach_inside() * (1.0 - e) - 2.0 * grain.deviation >= diameter_ + reserve()) ||
          static_cast<double>(grain.n_moved + static_cast<std::int64_t>(grain.moved.size())) >
              largest_moved_share * n_nodes;
 }
 
-/// Notes the places of all nodes anew: the frame starts as a mere translation.
+/// Notes the places of all nodes again: the frame starts as a mere translation.
 void ContactList::note_all(int g, const LaneState& state) {
   TrackedGrain& grain = grains_[g];
   const int n_nodes = layout_.n_nodes(g);
@@ -153,14 +153,14 @@ void ContactList::note_all(int g, const LaneState& state) {
   moments += moments_floor * n_nodes * Matrix3::Identity();
   grain.inverse_moments = moments.inverse();
   grain.grid = GrainGrid(places, bounds, reach_between() / (1.0 - largest_shortening));
-  grain.stray = rounding;
+  grain.deviation = rounding;
   grain.moved.clear();
   grain.moved_to.clear();
   grain.n_moved = 0;
-  grain.anew = true;
+  grain.all_noted = true;
 }
 
-/// Gives the nodes that strayed far the places where they are. False when one has left the grain's bounds.
+/// Gives the nodes that deviate far the places where they are. False when one has left the grain's bounds.
 bool ContactList::note_moved(int g, const LaneState& state) {
   TrackedGrain& grain = grains_[g];
   const GrainFrame back = grain.frame.inverse();

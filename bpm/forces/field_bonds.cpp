@@ -145,38 +145,97 @@ bool ForceField::can_split(const std::vector<int>& blocks) const {
   });
 }
 
-/// In three rounds, each of which needs all of the one before: volumes, and contacts and walls; forces on each piece's
-/// nodes of bonds with earlier pieces, and copies of the velocities beyond its end; the rest, with the kicks.
+/// Scratch of the blocks that several threads share.
+template <class Real> struct SplitScratch {
+  AlignedArray<Real> volume, force;
+  std::vector<AlignedArray<Real>> beyond; ///< copies of velocities behind the end of each piece
+};
+
+/// The bonds of some blocks in pieces, several to a block. A piece comes in rounds, each of which needs all pieces of
+/// the one before: volumes; forces on the piece's nodes of bonds with earlier pieces, and copies of the velocities
+/// behind its end; the rest, with the kicks.
+template <class Coordinate, class Real> class ForceField::SplitBonds {
+public:
+  SplitBonds(const ForceField& field, const std::vector<int>& blocks, int n_pieces, LaneState& state,
+             LaneArrays<Coordinate, Real>& lanes, const Box& box, const Evaluation& what,
+             std::vector<SplitScratch<Real>>& scratch)
+      : kernels_(kernels_of(field.table_, lanes)), n_pieces_(n_pieces), scratch_(scratch) {
+    scratch.resize(std::max(scratch.size(), blocks.size()));
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      passes_.push_back(field.bond_pass(blocks[k], state, lanes, box, what));
+      const auto n_lane_nodes =
+          static_cast<std::size_t>(passes_[k].block->n_nodes) * static_cast<std::size_t>(passes_[k].block->n_lanes);
+      scratch[k].volume.resize(n_lane_nodes);
+      scratch[k].force.resize(3 * n_lane_nodes);
+      scratch[k].beyond.resize(n_pieces);
+    }
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      passes_[k].arrays.f = scratch[k].force.data();
+      passes_[k].arrays.volume = scratch[k].volume.data();
+      passes_[k].arrays.residual_shift = passes_[k].residual_shift.data();
+    }
+  }
+
+  void volumes(int task) {
+    const int k = task / n_pieces_;
+    const Block& block = *passes_[k].block;
+    if (block.many_body) {
+      const kernels::NodeRange range = range_of(task);
+      const auto first = scratch_[k].volume.begin();
+      std::fill(first + static_cast<std::ptrdiff_t>(range.begin) * block.n_lanes,
+                first + static_cast<std::ptrdiff_t>(range.end) * block.n_lanes, Real{0});
+      kernels_.volumes(passes_[k].network->template view_as<Real>(), passes_[k].arrays, range);
+    }
+  }
+
+  void bonds_from_before(int task) {
+    const int k = task / n_pieces_, piece = task % n_pieces_;
+    const Block& block = *passes_[k].block;
+    const kernels::NodeRange range = range_of(task);
+    const auto network = passes_[k].network->template view_as<Real>();
+    kernels_.bonds_from_before(network, passes_[k].arrays, passes_[k].parameters, block.many_body, range);
+    const std::int64_t width = 3 * static_cast<std::int64_t>(block.n_lanes);
+    const Real* v = passes_[k].arrays.v;
+    scratch_[k].beyond[piece].assign(v + width * range.end, v + width * network.reach[range.end - 1]);
+  }
+
+  void rest(int task, Virial virial) {
+    const int k = task / n_pieces_, piece = task % n_pieces_;
+    const Block& block = *passes_[k].block;
+    auto arrays = passes_[k].arrays;
+    arrays.v_beyond = scratch_[k].beyond[piece].data();
+    std::int64_t volumes_done = block.n_nodes;
+    for (int s = piece * most_pieces / n_pieces_; s < (piece + 1) * most_pieces / n_pieces_; ++s) {
+      kernels_.bonds(passes_[k].network->template view_as<Real>(), arrays, passes_[k].parameters, block.many_body,
+                     virial,
+                     {piece_begin(block.n_nodes, most_pieces, s), piece_begin(block.n_nodes, most_pieces, s + 1),
+                      piece_begin(block.n_nodes, n_pieces_, piece + 1)},
+                     volumes_done, passes_[k].sums[s]);
+    }
+  }
+
+  const BondPass<Coordinate, Real>& pass(int k) const { return passes_[k]; }
+
+private:
+  kernels::NodeRange range_of(int task) const {
+    const int n_nodes = passes_[task / n_pieces_].block->n_nodes, piece = task % n_pieces_;
+    const int end = piece_begin(n_nodes, n_pieces_, piece + 1);
+    return {piece_begin(n_nodes, n_pieces_, piece), end, end};
+  }
+
+  const kernels::LaneKernels<Coordinate, Real>& kernels_;
+  int n_pieces_;
+  std::vector<SplitScratch<Real>>& scratch_; ///< per block
+  std::vector<BondPass<Coordinate, Real>> passes_;
+};
+
 template <class Coordinate, class Real>
 void ForceField::split_bonds_of(const std::vector<int>& blocks, int n_pieces, LaneState& state,
                                 LaneArrays<Coordinate, Real>& lanes, const Box& box, const Evaluation& what) {
-  struct Scratch {
-    AlignedArray<Real> volume, force;
-    std::vector<AlignedArray<Real>> beyond; ///< per piece
-  };
-  thread_local std::vector<Scratch> scratch_of_caller;
-  std::vector<Scratch>& scratch = scratch_of_caller; // of the calling thread, used by all
-  std::vector<BondPass<Coordinate, Real>> passes;
+  thread_local std::vector<SplitScratch<Real>> scratch_of_caller;
+  std::vector<SplitScratch<Real>>& scratch = scratch_of_caller; // of the calling thread, used by all
+  SplitBonds<Coordinate, Real> bonds(*this, blocks, n_pieces, state, lanes, box, what, scratch);
   const int n_blocks = static_cast<int>(blocks.size());
-  scratch.resize(std::max(scratch.size(), blocks.size()));
-  for (int k = 0; k < n_blocks; ++k) {
-    passes.push_back(bond_pass(blocks[k], state, lanes, box, what));
-    const auto n_lane_nodes =
-        static_cast<std::size_t>(passes[k].block->n_nodes) * static_cast<std::size_t>(passes[k].block->n_lanes);
-    scratch[k].volume.resize(n_lane_nodes);
-    scratch[k].force.resize(3 * n_lane_nodes);
-    scratch[k].beyond.resize(n_pieces);
-  }
-  for (int k = 0; k < n_blocks; ++k) {
-    passes[k].arrays.f = scratch[k].force.data();
-    passes[k].arrays.volume = scratch[k].volume.data();
-    passes[k].arrays.residual_shift = passes[k].residual_shift.data();
-  }
-  const auto& lane_kernels = kernels_of(table_, lanes);
-  const auto range_of = [n_pieces](const Block& block, int piece) {
-    const int end = piece_begin(block.n_nodes, n_pieces, piece + 1);
-    return kernels::NodeRange{piece_begin(block.n_nodes, n_pieces, piece), end, end};
-  };
 #pragma omp parallel
   {
 #pragma omp for schedule(dynamic, 1) nowait
@@ -187,49 +246,23 @@ void ForceField::split_bonds_of(const std::vector<int>& blocks, int n_pieces, La
     // A thread has the same pieces in all rounds and in the drift: they stay in its cache.
 #pragma omp for schedule(static, 1)
     for (int task = 0; task < n_blocks * n_pieces; ++task) {
-      const int k = task / n_pieces, piece = task % n_pieces;
-      const Block& block = *passes[k].block;
-      if (block.many_body) {
-        const kernels::NodeRange range = range_of(block, piece);
-        const auto first = scratch[k].volume.begin();
-        std::fill(first + static_cast<std::ptrdiff_t>(range.begin) * block.n_lanes,
-                  first + static_cast<std::ptrdiff_t>(range.end) * block.n_lanes, Real{0});
-        lane_kernels.volumes(passes[k].network->template view_as<Real>(), passes[k].arrays, range);
-      }
+      bonds.volumes(task);
     }
 #pragma omp for schedule(static, 1)
     for (int task = 0; task < n_blocks * n_pieces; ++task) {
-      const int k = task / n_pieces, piece = task % n_pieces;
-      const Block& block = *passes[k].block;
-      const kernels::NodeRange range = range_of(block, piece);
-      const auto network = passes[k].network->template view_as<Real>();
-      lane_kernels.bonds_from_before(network, passes[k].arrays, passes[k].parameters, block.many_body, range);
-      const std::int64_t width = 3 * static_cast<std::int64_t>(block.n_lanes);
-      const Real* v = passes[k].arrays.v;
-      scratch[k].beyond[piece].assign(v + width * range.end, v + width * network.reach[range.end - 1]);
+      bonds.bonds_from_before(task);
     }
 #pragma omp for schedule(static, 1)
     for (int task = 0; task < n_blocks * n_pieces; ++task) {
-      const int k = task / n_pieces, piece = task % n_pieces;
-      const Block& block = *passes[k].block;
-      auto arrays = passes[k].arrays;
-      arrays.v_beyond = scratch[k].beyond[piece].data();
-      std::int64_t volumes_done = block.n_nodes;
-      for (int s = piece * most_pieces / n_pieces; s < (piece + 1) * most_pieces / n_pieces; ++s) {
-        lane_kernels.bonds(passes[k].network->template view_as<Real>(), arrays, passes[k].parameters, block.many_body,
-                           what.virial,
-                           {piece_begin(block.n_nodes, most_pieces, s), piece_begin(block.n_nodes, most_pieces, s + 1),
-                            piece_begin(block.n_nodes, n_pieces, piece + 1)},
-                           volumes_done, passes[k].sums[s]);
-      }
+      bonds.rest(task, what.virial);
     }
   }
   for (int k = 0; k < n_blocks; ++k) {
     if (what.keep_forces) {
-      std::copy(scratch[k].force.begin(), scratch[k].force.end(), lanes.f.begin() + passes[k].block->offset);
+      std::copy(scratch[k].force.begin(), scratch[k].force.end(), lanes.f.begin() + bonds.pass(k).block->offset);
     }
     if (what.virial != Virial::none) {
-      sum_up(*passes[k].block, passes[k].sums, {});
+      sum_up(*bonds.pass(k).block, bonds.pass(k).sums, {});
     }
   }
 }

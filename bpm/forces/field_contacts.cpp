@@ -68,7 +68,7 @@ void ForceField::prepare_contacts(const LaneState& state, const Box& box) {
     return;
   }
   if (changed) {
-    know_nodes();
+    locate_nodes();
   }
 #pragma omp parallel for schedule(dynamic, 1)
   for (const int grain : layout_.grains()) {
@@ -76,12 +76,12 @@ void ForceField::prepare_contacts(const LaneState& state, const Box& box) {
   }
   if (changed) {
     list_near(box);
-    divide();
+    split_by_ranks();
   }
 }
 
 /// Says where the nodes of each grain are found, those of other ranks included.
-void ForceField::know_nodes() {
+void ForceField::locate_nodes() {
   if (distribution_.is_distributed()) {
     halo_.rebuild(contact_list_, layout_, distribution_, ContactHalo::Nodes::listed);
   }
@@ -113,7 +113,7 @@ void ForceField::list_near(const Box& box) {
 }
 
 /// Sorts the pairs that may touch, and all blocks, by whether they wait for other ranks.
-void ForceField::divide() {
+void ForceField::split_by_ranks() {
   own_part_ = {};
   shared_part_ = {};
   const std::vector<ContactPair>& pairs = contact_list_.pairs();

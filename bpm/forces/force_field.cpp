@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <numeric>
 #include <omp.h>
 #include <stdexcept>
 #include <type_traits>
@@ -17,6 +19,21 @@ namespace {
 
 /// Nodes whose drift and copies for the contact pass share a visit to the cache.
 constexpr int drift_chunk = 32;
+
+/// Gives all ranks the sums of all grains, which their owners know. Collective.
+void share_grain_sums(std::vector<GrainSums>& grains, const Distribution& distribution) {
+  using Row = std::array<double, sizeof(GrainSums) / sizeof(double)>;
+  static_assert(std::is_trivially_copyable_v<GrainSums> && sizeof(GrainSums) == sizeof(Row));
+  constexpr int width = std::tuple_size_v<Row>;
+  std::vector<double> rows(width * grains.size());
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    std::memcpy(&rows[width * g], &grains[g], sizeof(GrainSums));
+  }
+  distribution.ranks->share_rows(rows, width, distribution.ownership);
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    std::memcpy(&grains[g], &rows[width * g], sizeof(GrainSums));
+  }
+}
 
 } // namespace
 
@@ -55,8 +72,8 @@ void ForceField::layout_changed() {
 }
 
 /// Finds out which of these nodes move far; notes the largest speed^2 of those that the contact list does not follow.
-void ForceField::see_brisk(const Block& block, std::span<const std::int32_t> nodes, const LaneState& state,
-                           const kernels::Drift& drift, Drifted& drifted) const {
+void ForceField::note_fast_nodes(const Block& block, std::span<const std::int32_t> nodes, const LaneState& state,
+                                 const kernels::Drift& drift, Drifted& drifted) const {
   for (const std::int32_t node : nodes) {
     for (int lane = 0; lane < block.n_lanes; ++lane) {
       const int grain = block.grain[lane];
@@ -69,7 +86,7 @@ void ForceField::see_brisk(const Block& block, std::span<const std::int32_t> nod
                 drift.residual_shift;
       }
       if (const double speed2 = u.squaredNorm(); speed2 > drift.brisk_speed2) {
-        drifted.brisk.push_back({grain, node});
+        drifted.fast_nodes.push_back({grain, node});
         if (!contact_list_.follows(grain, node)) {
           drifted.motion.common_speed2 = std::max(drifted.motion.common_speed2, speed2);
         }
@@ -94,7 +111,7 @@ ForceField::Drifted ForceField::drift_nodes(const Block& block, int begin, int e
   }
   std::array<std::int32_t, static_cast<std::size_t>(drift_chunk) * max_lanes> brisk;
   drift.brisk = brisk.data();
-  drift.brisk_speed2 = std::pow(contact_list_.brisk_motion() / drift.dt, 2);
+  drift.brisk_speed2 = std::pow(contact_list_.fast_motion() / drift.dt, 2);
   Drifted drifted;
   BlockMotion& motion = drifted.motion;
   for (int node = begin; node < end; node += drift_chunk) {
@@ -111,7 +128,7 @@ ForceField::Drifted ForceField::drift_nodes(const Block& block, int begin, int e
     for (std::int32_t& found : std::span(brisk).first(part.n_brisk)) {
       found += node;
     }
-    see_brisk(block, std::span(brisk).first(part.n_brisk), state, drift, drifted);
+    note_fast_nodes(block, std::span(brisk).first(part.n_brisk), state, drift, drifted);
     for (int lane = 0; lane < block.n_lanes; ++lane) {
       const int grain = block.grain[lane];
       if (grain >= 0) {
@@ -147,8 +164,8 @@ std::vector<BlockMotion> ForceField::drift(LaneState& state, kernels::Drift drif
     result.largest_speed2 = std::max(result.largest_speed2, motion.largest_speed2);
     result.common_speed2 = std::max(result.common_speed2, motion.common_speed2);
     result.checksum += motion.checksum;
-    for (const auto& [grain, node] : drifted[task].brisk) {
-      contact_list_.note_brisk(grain, node);
+    for (const auto& [grain, node] : drifted[task].fast_nodes) {
+      contact_list_.note_fast_node(grain, node);
     }
   }
   collected_ = true;
@@ -178,26 +195,26 @@ void ForceField::evaluate_part(const Part& part, LaneState& state, const Box& bo
   if (split) {
     state.visit([&](auto& lanes) { split_bonds_of(part.blocks, n_pieces, state, lanes, box, what); });
   }
-  contact_seconds += kicked - start;
-  bond_seconds += omp_get_wtime() - kicked;
+  seconds_.contacts += kicked - start;
+  seconds_.bonds += omp_get_wtime() - kicked;
 }
 
 void ForceField::evaluate(LaneState& state, const Box& box, const Evaluation& what) {
   const double start = omp_get_wtime();
   prepare_contacts(state, box);
   collected_ = false;
-  search_seconds += omp_get_wtime() - start;
+  seconds_.search += omp_get_wtime() - start;
   wall_forces_.assign(walls_.size(), std::vector<double>(layout_.n_grains(), 0.0));
   if (distribution_.is_distributed()) {
     const double asked = omp_get_wtime();
     halo_.begin(contact_nodes_.get());
-    halo_seconds += omp_get_wtime() - asked;
+    seconds_.halo += omp_get_wtime() - asked;
   }
   evaluate_part(own_part_, state, box, what);
   if (distribution_.is_distributed()) {
     const double waited = omp_get_wtime();
     halo_.end();
-    halo_seconds += omp_get_wtime() - waited;
+    seconds_.halo += omp_get_wtime() - waited;
     evaluate_part(shared_part_, state, box, what);
   }
   sum_walls();
@@ -207,21 +224,16 @@ void ForceField::evaluate(LaneState& state, const Box& box, const Evaluation& wh
 void ForceField::sum_walls() {
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     distribution_.ranks->share_rows(wall_forces_[w], 1, distribution_.ownership);
-    walls_[w].force = 0.0;
-    for (const double force : wall_forces_[w]) {
-      walls_[w].force += force;
-    }
+    walls_.set_force(w, std::accumulate(wall_forces_[w].begin(), wall_forces_[w].end(), 0.0));
   }
 }
 
 void ForceField::share_sums(Virial virial) {
-  static_assert(sizeof(GrainSums) == 14 * sizeof(double));
   if (!distribution_.is_distributed() || virial == Virial::none) {
     return;
   }
   if (virial == Virial::full) {
-    distribution_.ranks->share_rows({results_.grains.front().virial.data(), 14 * results_.grains.size()}, 14,
-                                    distribution_.ownership);
+    share_grain_sums(results_.grains, distribution_);
     return;
   }
   std::vector<double> traces(2 * results_.grains.size());
@@ -269,8 +281,7 @@ ForceField::Results ForceField::shared_results() const {
     all.contacts[g].potential = row[7];
     all.contacts[g].n_touching = static_cast<std::int64_t>(row[8]);
   }
-  distribution_.ranks->share_rows({all.grains.front().virial.data(), 14 * all.grains.size()}, 14,
-                                  distribution_.ownership);
+  share_grain_sums(all.grains, distribution_);
   return all;
 }
 

@@ -6,7 +6,7 @@
 #include "bpm/forces/image_bonds.h"
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/forces/network_data.h"
-#include "bpm/forces/wall.h"
+#include "bpm/forces/walls.h"
 #include "bpm/laws/material.h"
 #include "bpm/packing/lane_state.h"
 
@@ -99,16 +99,18 @@ public:
 
   ContactList& contact_list() { return contact_list_; }
   const ContactList& contact_list() const { return contact_list_; }
-  std::vector<Wall>& walls() { return walls_; }
-  const std::vector<Wall>& walls() const { return walls_; }
+  Walls& walls() { return walls_; }
+  const Walls& walls() const { return walls_; }
   const NetworkData& network(int template_index) const { return networks_[template_index]; }
   const kernels::KernelTable& kernel_table() const { return table_; }
   bool has_periodic_template() const { return has_periodic_template_; }
   const ContactHalo& halo() const { return halo_; }
 
-  /// Seconds spent so far.
-  double bond_seconds = 0.0, contact_seconds = 0.0, search_seconds = 0.0;
-  double halo_seconds = 0.0; ///< of waiting for other ranks' nodes, and of asking for them
+  /// Seconds spent so far; `halo`: of waiting for other ranks' nodes, and of asking for them.
+  struct Seconds {
+    double bonds = 0.0, contacts = 0.0, search = 0.0, halo = 0.0;
+  };
+  const Seconds& seconds() const { return seconds_; }
 
 private:
   void prepare_contacts(const LaneState& state, const Box& box);
@@ -120,11 +122,11 @@ private:
   /// What the drift of some nodes of a block saw.
   struct Drifted {
     BlockMotion motion;
-    std::vector<GrainNode> brisk; ///< nodes that move far
+    std::vector<GrainNode> fast_nodes; ///< nodes that move far
   };
   Drifted drift_nodes(const Block& block, int begin, int end, LaneState& state, kernels::Drift drift);
-  void see_brisk(const Block& block, std::span<const std::int32_t> nodes, const LaneState& state,
-                 const kernels::Drift& drift, Drifted& drifted) const;
+  void note_fast_nodes(const Block& block, std::span<const std::int32_t> nodes, const LaneState& state,
+                       const kernels::Drift& drift, Drifted& drifted) const;
   template <class Real> void walls_on(int b, const LaneState& state, std::size_t wall, Real* f, bool with_sums);
   kernels::ContactCandidates seen_by_kernels(const ContactPair& pair, const std::vector<kernels::NodePair>& pairs,
                                              const Box& box, const Matrix3& residual_rate) const;
@@ -155,6 +157,7 @@ private:
   template <class Coordinate, class Real>
   void split_bonds_of(const std::vector<int>& blocks, int n_pieces, LaneState& state,
                       LaneArrays<Coordinate, Real>& lanes, const Box& box, const Evaluation& what);
+  template <class Coordinate, class Real> class SplitBonds;
   void sum_up(const Block& block, std::span<const kernels::LaneSums> sums, const ImageBondSums& image_sums);
   bool can_split(const std::vector<int>& blocks) const;
 
@@ -162,9 +165,9 @@ private:
   struct Part {
     std::vector<int> pairs, blocks;
   };
-  void know_nodes();
+  void locate_nodes();
   void list_near(const Box& box);
-  void divide();
+  void split_by_ranks();
   void evaluate_part(const Part& part, LaneState& state, const Box& box, const Evaluation& what);
   void sum_walls();
   // With several ranks, what others ask for is looked after too.
@@ -181,8 +184,9 @@ private:
   std::vector<NetworkData> networks_;
   std::vector<const NetworkData*> network_of_grain_;
   ContactList contact_list_;
-  std::vector<Wall> walls_;
+  Walls walls_;
   Results results_;
+  Seconds seconds_;
   const Distribution& distribution_;
   ContactHalo halo_;
   Part own_part_, shared_part_;                           ///< without and with grains of other ranks

@@ -2,6 +2,7 @@
 #include "bpm/packing/lane_state.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
@@ -154,6 +155,53 @@ Vector3 LaneState::velocity_sum(int grain) const {
 void LaneState::add_velocity(int grain, const Vector3& change) {
   for (int node = 0; node < layout_.n_nodes(grain); ++node) {
     set_velocity(grain, node, velocity(grain, node) + change);
+  }
+}
+
+Vector3 LaneState::position_sum(int grain) const {
+  Vector3 sum = Vector3::Zero();
+  for (int node = 0; node < layout_.n_nodes(grain); ++node) {
+    sum += position(grain, node);
+  }
+  return sum;
+}
+
+namespace {
+
+/// The profile's component `row` for the lanes of one node: `start` of each lane, and the gradient for its coordinates.
+template <class Coordinate, class Real>
+void add_profile_to_node(const Coordinate* x, Real* v, int n_lanes, const double* start, const double* weight,
+                         const Vector3& gradient) {
+  for (int lane = 0; lane < n_lanes; ++lane) {
+    const double change = gradient[0] * static_cast<double>(x[lane]) +
+                          gradient[1] * static_cast<double>(x[n_lanes + lane]) +
+                          gradient[2] * static_cast<double>(x[2 * n_lanes + lane]);
+    v[lane] += static_cast<Real>(start[lane] + weight[lane] * change);
+  }
+}
+
+} // namespace
+
+void LaneState::add_profile(const Block& block, const Matrix3& gradient, const Vector3& centre) {
+  for (int row = 0; row < 3; ++row) {
+    const Vector3 along = gradient.row(row);
+    if (along == Vector3::Zero()) {
+      continue;
+    }
+    std::array<double, max_lanes> start{}, weight{};
+    for (int lane = 0; lane < block.n_lanes; ++lane) {
+      if (block.grain[lane] >= 0) {
+        start[lane] = along.dot(origin_[block.grain[lane]] - centre);
+        weight[lane] = quantum_;
+      }
+    }
+    visit([&](auto& arrays) {
+      for (int node = 0; node < block.n_nodes; ++node) {
+        const std::int64_t at = block.offset + 3 * static_cast<std::int64_t>(node) * block.n_lanes;
+        add_profile_to_node(arrays.x.data() + at, arrays.v.data() + at + row * block.n_lanes, block.n_lanes,
+                            start.data(), weight.data(), along);
+      }
+    });
   }
 }
 

@@ -54,6 +54,10 @@ public:
   /// Adds to the velocity of every node of a grain.
   void add_velocity(int grain, const Vector3& change);
 
+  /// Adds the linear profile gradient (x - centre) to the velocities of a block's nodes, 1/tau and d; idle lanes stay.
+  void add_profile(const Block& block, const Matrix3& gradient, const Vector3& centre);
+  Vector3 position_sum(int grain) const;
+
   /// Moves the origins with an affine map; the drift moves the nodes. Nothing in full precision.
   void map_origins(const Matrix3& map, const Vector3& shift);
   /// Puts origins back to where their grains are, by whole quanta; positions do not change. Returns the largest

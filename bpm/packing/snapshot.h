@@ -41,7 +41,7 @@ struct Snapshot {
   std::vector<int> grains;
   std::int64_t step = 0;
   double time = 0.0;   ///< tau
-  double strain = 0.0; ///< accumulated shear strain
+  double strain = 0.0; ///< accumulated shear strain, with that of the cell's motion at the end of the step
   /// Shear rate that images move with while positions do not follow (remap = "velocities"), 1/tau; else 0.
   double streaming_rate = 0.0;
   Box box;

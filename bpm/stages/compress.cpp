@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/stages/compress.h"
 
+#include "bpm/dynamics/elastic_probe.h"
+#include "bpm/dynamics/stepper.h"
 #include "bpm/scene/schema.h"
 
 #include <algorithm>
@@ -37,7 +39,7 @@ bool CompressDriver::may_end(const Stepper& stepper) const {
 /// The modulus that the barostat has to do with: dP / d ln(1/V) of the second half of the ramp. Grains that rearrange
 /// answer to a change of volume with a fraction of the affine modulus, which is the most it can be.
 double CompressDriver::bulk_modulus(Stepper& stepper) const {
-  const double affine = stepper.affine_bulk_modulus();
+  const double affine = affine_bulk_modulus(stepper.moving());
   const double compressed = 3.0 * stage_.rate * (stepper.time() - halfway_.time);
   return compressed > 0.0 ? std::min(affine, (stepper.pressure() - halfway_.pressure) / compressed) : affine;
 }
@@ -54,7 +56,7 @@ CellRates CompressDriver::update(Stepper& stepper) {
   }
   if (phase_ == Phase::ramp && stepper.pressure() >= stage_.barostat.pressure) {
     const double modulus = bulk_modulus(stepper);
-    gain_ = barostat_gain(stage_.barostat, {modulus, stepper.sound_crossing(modulus), 0.0});
+    gain_ = barostat_gain(stage_.barostat, {modulus, sound_crossing(stepper.moving(), modulus), 0.0});
     phase_ = Phase::settle;
   }
   if (phase_ == Phase::ramp) {

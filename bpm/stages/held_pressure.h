@@ -2,11 +2,13 @@
 #pragma once
 
 #include "bpm/dynamics/barostat.h"
-#include "bpm/dynamics/stepper.h"
+#include "bpm/dynamics/simulation.h"
 
 #include <optional>
 
 namespace boba {
+
+class Stepper;
 
 /// The pressure that a stage holds, if it holds one: a barostat whose gain is settled when the stage begins.
 class HeldPressure {

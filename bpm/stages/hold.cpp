@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/stages/hold.h"
 
+#include "bpm/dynamics/stepper.h"
 #include "bpm/scene/schema.h"
 
 namespace boba {

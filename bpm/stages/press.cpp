@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/stages/press.h"
 
+#include "bpm/dynamics/stepper.h"
 #include "bpm/scene/schema.h"
 
 #include <algorithm>
@@ -17,16 +18,14 @@ void PressDriver::begin(Stepper& stepper) {
 }
 
 void PressDriver::begin_walls(Stepper& stepper) {
-  const std::array<double, 2> z = stepper.extent_z();
+  const std::array<double, 2> z = extent_z(stepper.moving());
   const double reach = 0.5 * stepper.node_diameter(); // where a wall begins to feel a node
-  const Vector3 up = Vector3::UnitZ();
-  stepper.forces().walls() = {{(z[0] - reach) * up, up, stage_.velocity * up},
-                              {(z[1] + reach) * up, -up, -stage_.velocity * up}};
+  stepper.ends().set_walls({z[0] - reach, z[1] + reach}, stage_.velocity);
   height_ = z[1] - z[0] + 2.0 * reach;
 }
 
 void PressDriver::begin_clamps(Stepper& stepper) {
-  const std::array<double, 2> z = stepper.extent_z();
+  const std::array<double, 2> z = extent_z(stepper.moving());
   height_ = z[1] - z[0] - 2.0 * stage_.clamp_thickness;
   if (!(height_ > 0.0)) {
     throw std::runtime_error(
@@ -34,10 +33,9 @@ void PressDriver::begin_clamps(Stepper& stepper) {
                     "{:.4g} d; it must be below half of that",
                     stage_.clamp_thickness, z[1] - z[0]));
   }
-  stepper.set_clamps({stepper.nodes_between(z[0], z[0] + stage_.clamp_thickness),
-                      stepper.nodes_between(z[1] - stage_.clamp_thickness, z[1])});
-  stepper.clamps()[0].velocity = stage_.velocity * Vector3::UnitZ();
-  stepper.clamps()[1].velocity = -stage_.velocity * Vector3::UnitZ();
+  stepper.ends().set_clamps({nodes_between(stepper.moving(), z[0], z[0] + stage_.clamp_thickness),
+                             nodes_between(stepper.moving(), z[1] - stage_.clamp_thickness, z[1])},
+                            stage_.velocity);
 }
 
 double PressDriver::moved() const {
@@ -46,21 +44,13 @@ double PressDriver::moved() const {
 
 CellRates PressDriver::update(Stepper& stepper) {
   steps_.count();
-  for (Wall& wall : stepper.forces().walls()) {
-    wall.point += dt_ * wall.velocity;
-  }
-  stepper.set_end_gap(height_ - 2.0 * moved());
+  stepper.ends().advance(dt_);
+  stepper.ends().set_gap(height_ - 2.0 * moved());
   return {};
 }
 
 void PressDriver::end(Stepper& stepper) {
-  // The ends stay where they are, at rest, for a stage that follows.
-  for (Wall& wall : stepper.forces().walls()) {
-    wall.velocity.setZero();
-  }
-  for (Clamp& clamp : stepper.clamps()) {
-    clamp.velocity.setZero();
-  }
+  stepper.ends().stop(); // for a stage that follows
 }
 
 StageProgress PressDriver::progress(const Stepper&) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/stages/shear.h"
 
+#include "bpm/dynamics/stepper.h"
 #include "bpm/scene/schema.h"
 
 #include <cmath>
@@ -10,20 +11,11 @@ namespace boba {
 void ShearDriver::begin(Stepper& stepper) {
   steps_.begin(stage_.strain / std::abs(stage_.rate), stepper.options().dt);
   pressure_.begin(stepper, stage_.rate);
-  if (stage_.remap == Remap::velocities) {
-    stepper.add_streaming(stage_.rate, 1.0);
-  }
 }
 
 CellRates ShearDriver::update(Stepper& stepper) {
   steps_.count();
   return {.shear = stage_.rate, .remap = stage_.remap, .dilation = pressure_.dilation_rate(stepper)};
-}
-
-void ShearDriver::end(Stepper& stepper) {
-  if (stage_.remap == Remap::velocities) {
-    stepper.add_streaming(stage_.rate, -1.0);
-  }
 }
 
 StageProgress ShearDriver::progress(const Stepper& stepper) const {

@@ -28,7 +28,7 @@ public:
   std::int64_t steps_left(const Stepper&) const override { return steps_.left(); }
   bool may_end(const Stepper&) const override { return steps_.left() == 1; }
   double shear_rate() const override { return stage_.rate; }
-  void end(Stepper& stepper) override;
+  void end(Stepper&) override {}
   StageProgress progress(const Stepper& stepper) const override;
   void save(SavedState& saved) const override;
   void restore(const SavedState& saved) override;

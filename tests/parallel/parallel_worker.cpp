@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs a small packing on the ranks it is started on and writes every bit of the outcome to a file.
 // Usage: parallel_worker CASE FILE [STATE]
+#include "bpm/dynamics/grain_migration.h"
 #include "bpm/dynamics/simulation.h"
 #include "bpm/dynamics/stepper.h"
+#include "bpm/dynamics/take_snapshot.h"
 #include "bpm/measure/scattering.h"
 #include "bpm/parallel/dealt_items.h"
 #include "bpm/parallel/message_passing.h"
@@ -156,14 +158,14 @@ void run_migrating(const Ranks& ranks, Bits& bits) {
       for (int& rank : owner) {
         rank = static_cast<int>(random() % ranks.size());
       }
-      stepper.move_grains(owner);
+      move_grains(stepper.moving(), owner);
     }
     stepper.advance(step % 10 == 9 ? Virial::full : Virial::trace);
     stepper.move_cell({.shear = 3e-2, .dilation = 0.05 * (stepper.pressure() - 0.05)});
   }
   bits.add("strain", stepper.strain());
-  bits.add(stepper.totals());
-  bits.add(stepper.snapshot(all_parts));
+  bits.add(totals_of(stepper.moving()));
+  bits.add(take_snapshot(stepper.moving(), all_parts));
 }
 
 /// An item's number, a vector and a list whose length differs from item to item, some of them empty.

@@ -100,7 +100,8 @@ std::vector<std::array<double, 6>> FrameStress::evaluate(const Snapshot& snapsho
   }
   in.place(snapshot);
   double size = in.evaluate(snapshot, 0.0);
-  if (!snapshot.velocity.empty() && in.dt > 0.0) {
+  // Forces of the first step saw the velocities as they are; those of later steps the velocities half a step before.
+  if (!snapshot.velocity.empty() && in.dt > 0.0 && snapshot.step > 0) {
     in.change = size;
     for (int k = 0; k < max_iterations && in.change > relative_change * size; ++k) {
       in.step_back(snapshot);

@@ -205,8 +205,9 @@ void MeasureTables::add_stress(const Frame& frame) {
   const Tensor6 total = total_stress(grains, snapshot.box);
   const StressSummary summary = summarise_stress(total);
   Row row(total.begin(), total.end());
+  const auto known = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
   for (const double value : {summary.pressure, summary.mu, summary.normal_difference_1, summary.normal_difference_2}) {
-    row.emplace_back(value);
+    row.push_back(known(value));
   }
   if (snapshot.velocity.empty()) {
     row.resize(row.size() + 6); // without velocities the kinetic part cannot be told apart: empty fields
@@ -220,10 +221,12 @@ void MeasureTables::add_stress(const Frame& frame) {
   const bool with_damping = !frame_stress_ || !snapshot.velocity.empty();
   const StressSummary of_run = summarise_stress(total_stress(snapshot.grain_stress, snapshot.box));
   for (const double value : {with_damping ? 1.0 : 0.0, of_run.pressure, of_run.mu}) {
-    row.emplace_back(value);
+    row.push_back(known(value));
   }
   write("stress", snapshot, row);
-  note("mu", snapshot, summary.mu);
+  if (std::isfinite(summary.mu)) {
+    note("mu", snapshot, summary.mu);
+  }
   note("P_k/d", snapshot, summary.pressure);
 }
 

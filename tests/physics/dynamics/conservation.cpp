@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What bonds and contacts cannot change stays: momentum (in both precisions, but for walls), angular momentum, energy.
 #include "bpm/dynamics/stepper.h"
+#include "bpm/dynamics/take_snapshot.h"
 #include "tests/physics/dynamics/nine_grains.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ Vector3 mean(const std::vector<Vector3>& values) {
 }
 
 Vector3 mean_velocity(const Stepper& stepper) {
-  return mean(stepper.snapshot({.velocity = true}).velocity);
+  return mean(take_snapshot(stepper.moving(), {.velocity = true}).velocity);
 }
 
 Packing dense_grains() {
@@ -61,7 +62,7 @@ TEST(Conservation, MomentumOfASlowDriftInMixedPrecision) {
     stepper.advance(step + 1 < n_steps ? Virial::none : Virial::full);
   }
   // What is left is a random walk: a node's rounding has at most half a quantum as standard deviation each step.
-  const Snapshot end = stepper.snapshot({.velocity = true});
+  const Snapshot end = take_snapshot(stepper.moving(), {.velocity = true});
   const std::vector<Vector3>& centres = end.grain_centre;
   const std::vector<std::int64_t> first = packing.first_nodes();
   const double quantum = std::ldexp(1.0, -27); // of a grain of radius up to 4 d
@@ -85,8 +86,8 @@ TEST(Conservation, MomentumIsTakenByWalls) {
   Packing packing = dense_grains();
   packing.box = Box(Vector3::Zero(), {200.0, 200.0, 200.0}, Vector3::Zero(), {false, false, false});
   Stepper stepper(std::move(packing), {}, {.precision = Precision::mixed});
-  const double low = stepper.extent_z()[0];
-  stepper.forces().walls() = {{low * Vector3::UnitZ(), Vector3::UnitZ(), Vector3::Zero()}};
+  const double low = extent_z(stepper.moving())[0];
+  stepper.forces().walls().set({{low * Vector3::UnitZ(), Vector3::UnitZ(), Vector3::Zero()}});
   stepper.start();
   for (int step = 1; step <= 320; ++step) {
     stepper.advance(step < 320 ? Virial::none : Virial::full);
@@ -96,7 +97,7 @@ TEST(Conservation, MomentumIsTakenByWalls) {
 
 TEST(Conservation, MomentumOfAuxeticGrains) {
   Stepper stepper(nine_grains(12.0), {}, {});
-  const auto momentum = [&] { return sum(stepper.snapshot({.velocity = true}).velocity); };
+  const auto momentum = [&] { return sum(take_snapshot(stepper.moving(), {.velocity = true}).velocity); };
   const Vector3 before = momentum();
   stepper.start();
   for (int step = 0; step < 500; ++step) {
@@ -114,7 +115,7 @@ TEST(Conservation, AngularMomentumOfAFreeGrain) {
                                    .speed = 0.2});
   Stepper stepper(packing, {}, {});
   const auto angular_momentum = [&] {
-    const Snapshot now = stepper.snapshot(all_parts);
+    const Snapshot now = take_snapshot(stepper.moving(), all_parts);
     Vector3 sum = Vector3::Zero();
     for (std::size_t i = 0; i < now.position.size(); ++i) {
       sum += (now.position[i] - Vector3(20, 20, 20)).cross(now.velocity[i]);
@@ -137,7 +138,7 @@ TEST(Conservation, EnergyOfAnUndampedPairwisePackingToSecondOrder) {
     double lowest = 1e300, highest = -1e300;
     for (int step = 0; step < static_cast<int>(10.0 / dt); ++step) {
       stepper.advance(Virial::full);
-      const Totals totals = stepper.totals();
+      const Totals totals = totals_of(stepper.moving());
       const double energy = totals.kinetic_energy + totals.elastic_energy;
       lowest = std::min(lowest, energy);
       highest = std::max(highest, energy);

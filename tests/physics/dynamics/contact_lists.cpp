@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contact lists in whole runs: those that are kept as long as they hold find what lists made anew at every step find.
 #include "bpm/dynamics/stepper.h"
+#include "bpm/dynamics/take_snapshot.h"
 #include "tests/physics/dynamics/nine_grains.h"
 
 #include <algorithm>
@@ -18,9 +19,6 @@ TEST(ContactLists, ThatLiveLongMissNothing) {
     Snapshot end[2];
     for (Stepper* stepper : {&lasting, &fresh}) {
       stepper->start();
-      if (remap == Remap::velocities) {
-        stepper->add_streaming(0.02, 1.0);
-      }
       for (int step = 0; step < 600; ++step) {
         if (stepper == &fresh) {
           stepper->forces().contact_list().invalidate();
@@ -28,7 +26,7 @@ TEST(ContactLists, ThatLiveLongMissNothing) {
         stepper->advance(step + 1 < 600 ? Virial::trace : Virial::full);
         stepper->move_cell({.shear = 0.02, .remap = remap, .dilation = 0.05 * (stepper->pressure() - 0.2)});
       }
-      end[stepper == &fresh] = stepper->snapshot(all_parts);
+      end[stepper == &fresh] = take_snapshot(stepper->moving(), all_parts);
     }
     EXPECT_GT(lasting.forces().contact_totals().n_touching, 100);
     EXPECT_LT(lasting.forces().contact_list().counts().grains, 300 * 9);

@@ -2,6 +2,7 @@
 // What must not matter to the forces, on random packings: where the origin is, how things are numbered, which of the
 // equivalent cells is taken, which units.
 #include "bpm/dynamics/stepper.h"
+#include "bpm/dynamics/take_snapshot.h"
 #include "tests/support/small_packings.h"
 
 #include <algorithm>
@@ -45,7 +46,7 @@ struct Forces {
 Forces forces_of(const Packing& packing, const Material& material = {}) {
   Stepper stepper(packing, material, {});
   stepper.evaluate_only();
-  Forces result{stepper.snapshot({.force = true}).force, stepper.totals().stress, 0.0};
+  Forces result{take_snapshot(stepper.moving(), {.force = true}).force, totals_of(stepper.moving()).stress, 0.0};
   for (const Vector3& f : result.force) {
     result.largest = std::max(result.largest, f.norm());
   }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forces, pressure and short runs against those that LAMMPS (the authors' branch) computed;
 // tests/data/forces/README.txt.
+#include "bpm/dynamics/motion_archive.h"
 #include "bpm/dynamics/stepper.h"
+#include "bpm/dynamics/take_snapshot.h"
 #include "tests/support/lammps_fixture.h"
 
 #include <cmath>
@@ -31,14 +33,14 @@ TEST_P(LammpsForces, AgreeToRounding) {
   const LammpsFrame frame = read_lammps_dump(force_data(dump));
   Stepper stepper(read.packing, {}, {});
   stepper.evaluate_only();
-  const Snapshot snapshot = stepper.snapshot({.force = true});
+  const Snapshot snapshot = take_snapshot(stepper.moving(), {.force = true});
   const double difference = largest_difference(read, snapshot.force, frame, frame.force);
   const double scale = largest_norm(frame.force);
   RecordProperty("relative_difference", std::to_string(difference / scale));
   EXPECT_LT(difference, 1e-11 * scale) << "relative " << difference / scale;
 
   const std::array<double, 6> theirs = lammps_pressure(name() + ".press.txt", "step0");
-  const Totals totals = stepper.totals();
+  const Totals totals = totals_of(stepper.moving());
   double largest = 0.0;
   for (const double p : theirs) {
     largest = std::max(largest, std::abs(p));
@@ -63,12 +65,12 @@ void expect_same_run(const std::string& box, const std::string& alpha, int n, do
   for (int step = 0; step < n; ++step) {
     stepper.advance(Virial::full);
   }
-  const Snapshot snapshot = stepper.snapshot({.velocity = true, .force = true});
+  const Snapshot snapshot = take_snapshot(stepper.moving(), {.velocity = true, .force = true});
   EXPECT_LT(largest_position_difference(read, snapshot.position, frame, snapshot.box), tolerance);
   EXPECT_LT(largest_difference(read, snapshot.velocity, frame, frame.velocity), tolerance);
   const std::array<double, 6> pressure = lammps_pressure(box + ".a" + alpha + ".press.txt", "step" + std::to_string(n));
   for (int c = 0; c < 6; ++c) {
-    EXPECT_NEAR(-stepper.totals().stress[c], pressure[c], tolerance);
+    EXPECT_NEAR(-totals_of(stepper.moving()).stress[c], pressure[c], tolerance);
   }
 }
 
@@ -101,7 +103,7 @@ TEST(LammpsRun, ForcesOfLateStatesAgreeToRounding) {
     }
     Stepper stepper(read.packing, {}, {});
     stepper.evaluate_only();
-    EXPECT_LT(largest_difference(read, stepper.snapshot({.force = true}).force, frame, frame.force),
+    EXPECT_LT(largest_difference(read, take_snapshot(stepper.moving(), {.force = true}).force, frame, frame.force),
               1e-11 * largest_norm(frame.force))
         << name;
   }
@@ -117,6 +119,15 @@ Matrix3 tilt_gradient(const Box& box) {
   return rate * box.h_inverse();
 }
 
+/// LAMMPS writes a state after the cell's motion at the end of the step, Boba before it.
+void move_with_cell(Snapshot& snapshot, const Stepper& stepper) {
+  const MovingCell& cell = stepper.moving().cell;
+  for (Vector3& x : snapshot.position) {
+    x = cell.position_map() * x + cell.position_shift();
+  }
+  snapshot.box = cell.box();
+}
+
 TEST(LammpsShear, PositionsRemapped) {
   for (const int n : {10, 100}) {
     const LammpsPacking read = fixture_packing("tri", "tri.a2.step0.dump.gz", 2.0);
@@ -127,7 +138,8 @@ TEST(LammpsShear, PositionsRemapped) {
       const Matrix3 gradient = tilt_gradient(stepper.box());
       stepper.deform_cell(gradient, gradient);
     }
-    const Snapshot snapshot = stepper.snapshot({.velocity = true, .force = true});
+    Snapshot snapshot = take_snapshot(stepper.moving(), {.velocity = true, .force = true});
+    move_with_cell(snapshot, stepper);
     const LammpsFrame frame =
         read_lammps_dump(force_data("tri.shear_remap_x.a2.step" + std::to_string(n) + ".dump.gz"));
     const double tolerance = n == 10 ? 1e-11 : 1e-3;
@@ -156,21 +168,22 @@ TEST(LammpsShear, VelocitiesRemapped) {
       read.packing.velocity[i][0] += tilt_rate * box.image_of(read.packing.position[i])[1];
     }
     Stepper stepper(read.packing, {}, {});
-    stepper.set_residual_gradient(tilt_gradient(box));
+    stepper.assume_streaming(tilt_gradient(box));
     stepper.start();
     SavedState saved;
-    stepper.save(saved);
+    save_motion(stepper.moving(), saved);
     std::vector<double>& numbers = saved.real["position"];
     for (std::size_t x = 0; x < numbers.size(); x += 3) {
       const Vector3 position(numbers[x], numbers[x + 1], numbers[x + 2]);
       numbers[x] -= tilt_rate * dt * box.image_of(position)[1];
     }
-    stepper.restore(saved);
+    restore_motion(stepper.moving(), saved);
     for (int step = 0; step < n; ++step) {
       stepper.advance(Virial::full);
       stepper.deform_cell(tilt_gradient(stepper.box()), Matrix3::Zero());
     }
-    Snapshot snapshot = stepper.snapshot({.velocity = true, .force = true});
+    Snapshot snapshot = take_snapshot(stepper.moving(), {.velocity = true, .force = true});
+    move_with_cell(snapshot, stepper);
     for (std::size_t i = 0; i < snapshot.velocity.size(); ++i) {
       snapshot.velocity[i][0] -= tilt_rate * snapshot.box.image_of(snapshot.position[i])[1];
     }

@@ -2,6 +2,7 @@
 // 64 grains of 303 nodes sheared to strain 1 from the same state as LAMMPS did (tests/data/packing64): rate 1e-3,
 // positions remapped, P~ = 0.1 held with gain 0.02, alpha = 0. The trajectories part by chaos; averages must not.
 #include "bpm/dynamics/stepper.h"
+#include "bpm/dynamics/take_snapshot.h"
 #include "bpm/io/lammps_packing.h"
 #include "bpm/measure/blocking.h"
 
@@ -51,7 +52,7 @@ Series boba_series() {
     }
     if (step % interval == 0) {
       series.strain.push_back(1e-4 * step);
-      series.mu.push_back(stepper.totals().mu());
+      series.mu.push_back(totals_of(stepper.moving()).mu());
       series.volume.push_back(stepper.box().volume());
     }
     stepper.move_cell({.shear = 1e-3, .dilation = 0.02 * (stepper.pressure() - target)});

@@ -2,6 +2,7 @@
 // Whole runs: flips, threads, restarts, stages, walls, blow-up.
 #include "bpm/dynamics/simulation.h"
 #include "bpm/dynamics/stepper.h"
+#include "bpm/dynamics/take_snapshot.h"
 #include "bpm/stages/compress.h"
 #include "bpm/stages/hold.h"
 #include "bpm/stages/press.h"
@@ -63,7 +64,7 @@ TEST(Runs, DoNotDependOnThreadsThatShareABlock) {
     for (int step = 0; step < 30; ++step) {
       stepper.advance(step % 3 == 2 ? Virial::full : Virial::trace);
     }
-    return std::make_pair(stepper.snapshot(all_parts), stepper.forces().grain_sums());
+    return std::make_pair(take_snapshot(stepper.moving(), all_parts), stepper.forces().grain_sums());
   };
   for (const Precision precision : {Precision::full, Precision::mixed}) {
     const auto [one, sums_of_one] = run(1, precision);
@@ -85,23 +86,21 @@ TEST(Runs, MixedPrecisionFollowsDouble) {
     Stepper exact(nine_grains(), {}, {}), mixed(nine_grains(), {}, {.precision = Precision::mixed});
     for (Stepper* stepper : {&exact, &mixed}) {
       stepper->start();
-      if (remap == Remap::velocities) {
-        stepper->add_streaming(0.02, 1.0);
-      }
       for (int step = 0; step < 100; ++step) {
         stepper->advance(step + 1 < 100 ? Virial::trace : Virial::full);
         stepper->move_cell({.shear = 0.02, .remap = remap, .dilation = 0.05 * (stepper->pressure() - 0.05)});
       }
     }
-    const Snapshot a = exact.snapshot(all_parts), b = mixed.snapshot(all_parts);
+    const Snapshot a = take_snapshot(exact.moving(), all_parts), b = take_snapshot(mixed.moving(), all_parts);
     double largest = 0.0;
     for (std::size_t i = 0; i < a.position.size(); ++i) {
       largest = std::max(largest, (a.position[i] - b.position[i]).norm());
     }
     EXPECT_LT(largest, 1e-4);
     EXPECT_GT(largest, 0.0); // it is mixed precision that was run
-    EXPECT_NEAR(exact.totals().pressure, mixed.totals().pressure, 1e-5 * exact.totals().pressure);
-    EXPECT_NEAR(exact.totals().mu(), mixed.totals().mu(), 1e-4);
+    EXPECT_NEAR(totals_of(exact.moving()).pressure, totals_of(mixed.moving()).pressure,
+                1e-5 * totals_of(exact.moving()).pressure);
+    EXPECT_NEAR(totals_of(exact.moving()).mu(), totals_of(mixed.moving()).mu(), 1e-4);
   }
 }
 
@@ -152,7 +151,7 @@ TEST(Runs, FlipChangesNothing) {
     }
   }
   EXPECT_GE(flips, 3);
-  const Snapshot a = flipping.snapshot(all_parts), b = leaning.snapshot(all_parts);
+  const Snapshot a = take_snapshot(flipping.moving(), all_parts), b = take_snapshot(leaning.moving(), all_parts);
   for (std::size_t i = 0; i < a.position.size(); ++i) {
     ASSERT_LT((a.position[i] - b.position[i]).norm(), 1e-8);
     ASSERT_LT((a.force[i] - b.force[i]).norm(), 1e-8);
@@ -175,7 +174,7 @@ TEST(Runs, FlipLeavesForcesAndPositionsAlone) {
   Stepper a(packing, {}, {}), b(same, {}, {});
   a.evaluate_only();
   b.evaluate_only();
-  const Snapshot sa = a.snapshot(all_parts), sb = b.snapshot(all_parts);
+  const Snapshot sa = take_snapshot(a.moving(), all_parts), sb = take_snapshot(b.moving(), all_parts);
   for (std::size_t i = 0; i < sa.force.size(); ++i) {
     EXPECT_EQ(sa.position[i], sb.position[i]);
     EXPECT_LT((sa.force[i] - sb.force[i]).norm(), 1e-12);
@@ -214,14 +213,14 @@ TEST(Runs, WallIsTheMirrorImage) {
   below.centre[2] = lowest - gap;
   Stepper pair(make_packing(open, {ball, mirrored}, {above, below}), {}, {});
   Stepper wall(make_packing(open, {ball}, {above}), {}, {});
-  wall.forces().walls() = {Wall{}};
+  wall.forces().walls().set({Wall{}});
   pair.start();
   wall.start();
   for (int step = 0; step < 50; ++step) {
     pair.advance(Virial::full);
     wall.advance(Virial::full);
   }
-  const Snapshot a = pair.snapshot(all_parts), b = wall.snapshot(all_parts);
+  const Snapshot a = take_snapshot(pair.moving(), all_parts), b = take_snapshot(wall.moving(), all_parts);
   EXPECT_GT(wall.forces().contact_totals().largest_overlap, 0.0);
   double moved = 0.0;
   for (std::size_t i = 0; i < b.position.size(); ++i) {

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/dynamics/total_momentum.h"
+
+#include "bpm/dynamics/node_exchange.h"
+
+namespace boba {
+
+namespace {
+
+/// Over all ranks, grain by grain in the packing's order: the same whatever the lanes, threads and ranks.
+Vector3 peculiar_velocity_sum(const MovingPacking& moving, const Matrix3& streaming) {
+  std::vector<Vector3> of_grain(moving.layout.n_grains(), Vector3::Zero());
+  const bool streams = streaming != Matrix3::Zero();
+#pragma omp parallel for schedule(dynamic, 1)
+  for (const int g : moving.layout.grains()) {
+    of_grain[g] = moving.state.velocity_sum(g);
+    if (streams) {
+      const Vector3 from_origin = moving.state.position_sum(g) - moving.layout.n_nodes(g) * moving.cell.box().origin();
+      of_grain[g] -= streaming * from_origin;
+    }
+  }
+  share_grains(moving, of_grain);
+  Vector3 sum = Vector3::Zero();
+  for (const Vector3& v : of_grain) {
+    sum += v;
+  }
+  return sum;
+}
+
+} // namespace
+
+void note_momentum(MovingPacking& moving, const Matrix3& streaming) {
+  moving.noted_momentum = peculiar_velocity_sum(moving, streaming);
+}
+
+void restore_momentum(MovingPacking& moving, const Matrix3& streaming) {
+  if (!moving.ends.are_free()) {
+    return;
+  }
+  const Vector3 change = (moving.noted_momentum - peculiar_velocity_sum(moving, streaming)) / moving.n_nodes();
+#pragma omp parallel for schedule(dynamic, 1)
+  for (const int g : moving.layout.grains()) {
+    moving.state.add_velocity(g, change);
+  }
+}
+
+} // namespace boba

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/dynamics/moving_packing.h"
+
+namespace boba {
+
+/// The momentum of the whole. In mixed precision the rounding errors of a packing's forces do not add up to zero, and
+/// at rest they are the same at every step: nothing damps the motion of the whole, so that it would be accelerated for
+/// good.
+
+/// Notes the sum of all nodes' velocities without the profile `streaming` (1/tau) that they hold. Collective.
+void note_momentum(MovingPacking& moving, const Matrix3& streaming);
+
+/// Takes the change of that sum since it was noted from all nodes alike. Bonds and contacts cannot change it; walls and
+/// clamps can, and then nothing is done. Collective.
+void restore_momentum(MovingPacking& moving, const Matrix3& streaming);
+
+} // namespace boba
