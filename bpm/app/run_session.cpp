@@ -139,6 +139,9 @@ private:
       }
       write_checkpoint();
       log_.say(summary_.text(simulation_, stage.label));
+      if (const std::string report = stage.driver->report(); !report.empty()) {
+        log_.say(stage.label + ": " + report);
+      }
     }
     return finish();
   }

@@ -37,6 +37,8 @@ public:
   virtual void end(Stepper& stepper) = 0;
   /// Fills phase, share done, driven quantity, value and target.
   virtual StageProgress progress(const Stepper& stepper) const = 0;
+  /// What is to be said at the stage's end beside the means: how well it held what it was to hold. "" where nothing is.
+  virtual std::string report() const { return ""; }
   /// All that the stage needs to continue bit for bit.
   virtual void save(SavedState& saved) const = 0;
   virtual void restore(const SavedState& saved) = 0;

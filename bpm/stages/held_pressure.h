@@ -3,6 +3,7 @@
 
 #include "bpm/dynamics/barostat.h"
 #include "bpm/dynamics/simulation.h"
+#include "bpm/stages/held_pressure_report.h"
 
 #include <optional>
 
@@ -18,15 +19,17 @@ public:
   bool is_held() const { return barostat_.has_value(); }
   /// Settles the gain for a packing that is sheared at `shear_rate` (1/tau).
   void begin(Stepper& stepper, double shear_rate);
-  /// d ln L / dt of the cell after a step, 1/tau; 0 when no pressure is held.
-  double dilation_rate(const Stepper& stepper) const;
+  /// d ln L / dt of the cell after a step, 1/tau; 0 when no pressure is held. `share_done` of the stage: 0 .. 1.
+  double dilation_rate(const Stepper& stepper, double share_done);
+  const HeldPressureReport& report() const { return report_; }
 
-  void save(SavedState& saved) const { saved.real["driver"] = {gain_}; }
-  void restore(const SavedState& saved) { gain_ = saved.real.at("driver").at(0); }
+  void save(SavedState& saved) const;
+  void restore(const SavedState& saved);
 
 private:
   std::optional<Barostat> barostat_;
   double gain_ = 0.0; ///< d/(k tau)
+  HeldPressureReport report_;
 };
 
 } // namespace boba

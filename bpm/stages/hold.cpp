@@ -13,7 +13,7 @@ void HoldDriver::begin(Stepper& stepper) {
 
 CellRates HoldDriver::update(Stepper& stepper) {
   steps_.count();
-  return {.dilation = pressure_.dilation_rate(stepper)};
+  return {.dilation = pressure_.dilation_rate(stepper, steps_.share_done())};
 }
 
 StageProgress HoldDriver::progress(const Stepper& stepper) const {

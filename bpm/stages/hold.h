@@ -28,6 +28,7 @@ public:
   double shear_rate() const override { return 0.0; }
   void end(Stepper&) override {}
   StageProgress progress(const Stepper& stepper) const override;
+  std::string report() const override { return pressure_.is_held() ? pressure_.report().text() : ""; }
   void save(SavedState& saved) const override;
   void restore(const SavedState& saved) override;
 

@@ -15,7 +15,8 @@ void ShearDriver::begin(Stepper& stepper) {
 
 CellRates ShearDriver::update(Stepper& stepper) {
   steps_.count();
-  return {.shear = stage_.rate, .remap = stage_.remap, .dilation = pressure_.dilation_rate(stepper)};
+  return {
+      .shear = stage_.rate, .remap = stage_.remap, .dilation = pressure_.dilation_rate(stepper, steps_.share_done())};
 }
 
 StageProgress ShearDriver::progress(const Stepper& stepper) const {

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace boba {
+
+/// How well a stage holds its pressure: mean, spread and share of the steps within the tolerance, over its second half.
+class HeldPressureReport {
+public:
+  /// A step at the pressure P for the target P0 (k/d, not 0), when `share_done` (0 .. 1) of the stage is done.
+  void add(double pressure, double target, double share_done);
+  /// True when the mean is farther from the target than the tolerance, or there are no steps to tell.
+  bool is_missed() const;
+  /// "pressure held at 0.0501 +- 0.002 k/d, 98 % of the steps within 5 % of 0.05", with a warning where the target was
+  /// missed; "" without steps.
+  std::string text() const;
+
+  /// All that it has added up, for a checkpoint.
+  std::vector<double> numbers() const { return {n_, target_, sum_, sum2_, n_within_}; }
+  void restore(double n, double target, double sum, double sum2, double n_within);
+
+  static constexpr double tolerance = 0.05; ///< of P / P0
+
+private:
+  double n_ = 0.0, target_ = 0.0;
+  double sum_ = 0.0, sum2_ = 0.0; ///< of P / P0 - 1 and of its square
+  double n_within_ = 0.0;
+};
+
+} // namespace boba
