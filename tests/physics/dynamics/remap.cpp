@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The two ways in which a shear of the cell reaches the nodes: what both keep, and by how much they differ.
+// Shear through moving images alone: what it must leave as it was.
 #include "bpm/dynamics/simulation.h"
 #include "bpm/stages/hold.h"
 #include "bpm/stages/shear.h"
@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
-#include <numeric>
 
 namespace boba::test {
 namespace {
@@ -51,8 +50,8 @@ Packing grains_at_rest() {
   return packing;
 }
 
-// The barostat lets the packing grow by some per cent while it is sheared and the cell flips: momentum without
-// streaming is the same in the stage, where it ends and after it, and nothing of the streaming is left.
+// The barostat changes the size of the packing by some per cent while it is sheared and the cell flips: momentum
+// without streaming is the same in the stage, where it ends and after it, and nothing of the streaming is left.
 TEST(Remap, PeculiarMomentumStays) {
   for (const Precision precision : {Precision::full, Precision::mixed}) {
     const double tolerance = precision == Precision::full ? 1e-9 : 3e-4; // floats of 0.2 d/tau, a thousand nodes
@@ -66,7 +65,7 @@ TEST(Remap, PeculiarMomentumStays) {
     const Snapshot before = simulation.snapshot({.velocity = true});
     simulation.run(1, HoldDriver({.time = 1.0, .barostat = barostat}), observers);
     EXPECT_EQ(watcher.streaming.back(), 0.0);
-    EXPECT_GT(watcher.heights.back() / watcher.heights.front(), 1.02);
+    EXPECT_GT(std::abs(watcher.heights.back() / watcher.heights.front() - 1.0), 0.02);
     const Vector3 wanted(1e-3 * static_cast<double>(before.velocity.size()), 0.0, 0.0);
     for (std::size_t k = 0; k < watcher.sums.size(); ++k) {
       ASSERT_LT((watcher.sums[k] - wanted).norm(), tolerance) << "look " << k;
@@ -90,74 +89,6 @@ TEST(Remap, ProfileIsTakenAwayWhole) {
   }
   EXPECT_GT(profile, 0.2);
   EXPECT_LT(largest, 0.3 * profile); // what forces do in two steps
-}
-
-/// Mean mu and its standard error from blocks, over the second half of a sheared run at constant pressure.
-struct Mean {
-  double value = 0.0, error = 0.0, pressure = 0.0, volume = 0.0;
-};
-
-class StressWatcher : public Observer {
-public:
-  bool wants(const StepForecast& forecast) override { return forecast.step % 10 == 0; }
-  void observe(const Simulation& simulation, const StageProgress&) override {
-    if (simulation.strain() > 1.0) {
-      mu.push_back(simulation.totals().mu());
-      pressure.push_back(simulation.totals().pressure);
-      volume.push_back(simulation.box().volume());
-    }
-  }
-  std::vector<double> mu, pressure, volume;
-};
-
-double mean_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-Mean mean_mu(Remap remap, double gamma) {
-  Simulation simulation(nine_grains(0.0), {.gamma = gamma}, {.precision = Precision::mixed});
-  StressWatcher watcher;
-  std::vector<Observer*> observers = {&watcher};
-  const ShearStage stage = {
-      .rate = rate, .strain = 9.0, .remap = remap, .barostat = Barostat{.pressure = 0.1, .gain = 0.05}};
-  simulation.run(0, ShearDriver(stage), observers);
-  constexpr int n_blocks = 16;
-  const std::size_t length = watcher.mu.size() / n_blocks;
-  std::vector<double> blocks;
-  for (int b = 0; b < n_blocks; ++b) {
-    const auto first = watcher.mu.begin() + static_cast<std::ptrdiff_t>(b * length);
-    blocks.push_back(mean_of({first, first + static_cast<std::ptrdiff_t>(length)}));
-  }
-  const double mean = mean_of(blocks);
-  double spread2 = 0.0;
-  for (const double block : blocks) {
-    spread2 += (block - mean) * (block - mean) / (n_blocks - 1.0);
-  }
-  return {mean, std::sqrt(spread2 / n_blocks), mean_of(watcher.pressure), mean_of(watcher.volume)};
-}
-
-// Bonds that are turned and stretched with the flow are damped: where velocities hold the shear, that adds
-// gamma rate sum r0^2 / (15 V) to the stress. docs/notation.md, "Box".
-TEST(Remap, MuDiffersByTheDampingOfTheMeanFlow) {
-  const Packing packing = nine_grains(0.0);
-  double s2 = 0.0;
-  for (const Grain& grain : packing.grains) {
-    for (const Bond& bond : packing.templates[grain.template_index]->bonds) {
-      s2 += bond.r0 * bond.r0;
-    }
-  }
-  for (const double gamma : {1.0, 0.5, 0.25}) {
-    const Mean positions = mean_mu(Remap::positions, gamma), velocities = mean_mu(Remap::velocities, gamma);
-    const double expected = gamma * s2 * rate / (15.0 * velocities.volume * velocities.pressure);
-    const double error = std::hypot(positions.error, velocities.error);
-    std::printf(
-        "gamma %g: mu %.4f +- %.4f and %.4f +- %.4f, difference %.4f, expected %.4f, P %.5f %.5f, V %.1f %.1f\n", gamma,
-        positions.value, positions.error, velocities.value, velocities.error, velocities.value - positions.value,
-        expected, positions.pressure, velocities.pressure, positions.volume, velocities.volume);
-    EXPECT_NEAR(velocities.value - positions.value, expected, 4.0 * error) << "gamma " << gamma;
-    EXPECT_LT(4.0 * error, expected) << "the test must be able to fail";
-    EXPECT_NEAR(velocities.pressure, positions.pressure, 2e-3 * positions.pressure);
-  }
 }
 
 } // namespace
