@@ -18,8 +18,8 @@ constexpr double least_pressure = 1e-12;
 StressSummary summarise_stress(const Tensor6& s) {
   StressSummary summary;
   summary.pressure = -(s[0] + s[1] + s[2]) / 3.0;
-  summary.mu = std::abs(summary.pressure) > least_pressure ? s[3] / summary.pressure
-                                                            : std::numeric_limits<double>::quiet_NaN();
+  summary.mu =
+      std::abs(summary.pressure) > least_pressure ? s[3] / summary.pressure : std::numeric_limits<double>::quiet_NaN();
   summary.normal_difference_1 = s[0] - s[1];
   summary.normal_difference_2 = s[1] - s[2];
   return summary;

@@ -13,8 +13,8 @@ using Tensor6 = std::array<double, 6>;
 
 /// What is read off a stress tensor (tension positive), k/d.
 struct StressSummary {
-  double pressure = 0.0;            ///< -(xx + yy + zz) / 3
-  double mu = 0.0;                  ///< xy / pressure, signed: positive in forward shear; not a number below a pressure of 1e-12 k/d
+  double pressure = 0.0; ///< -(xx + yy + zz) / 3
+  double mu = 0.0; ///< xy / pressure, signed: positive in forward shear; not a number below a pressure of 1e-12 k/d
   double normal_difference_1 = 0.0; ///< N1 = xx - yy (flow minus gradient direction)
   double normal_difference_2 = 0.0; ///< N2 = yy - zz (gradient minus vorticity direction)
 };
