@@ -25,12 +25,10 @@ int main() try {
 
   boba::Simulation simulation(packing, boba::Material{}, {.dt = 0.1, .threads = 2});
   simulation.run(0, boba::CompressDriver({.barostat = {.pressure = 0.05}, .rate = 2e-3}), {});
-  simulation.evaluate();
   std::printf("pressure %.6f k/d\n", simulation.totals().pressure);
 
   simulation.run(1, boba::ShearDriver({.rate = 1e-3, .strain = 0.1}), {});
   const boba::Snapshot snapshot = simulation.snapshot({.velocity = true, .force = true});
-  simulation.evaluate();
   const auto stress = boba::measure::summarise_stress(simulation.totals().stress);
   std::printf("strain %.4f, mu %.4f\n", simulation.strain(), stress.mu);
   for (int grain = 0; grain < topology.n_grains(); ++grain) {
