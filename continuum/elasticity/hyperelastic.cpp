@@ -73,6 +73,38 @@ GradientResponse HyperelasticLaw::at(const Gradient& gradient) const {
   return {turn.transpose() * stress, turn.transpose() * local * turn};
 }
 
+SolidResponse HyperelasticLaw::solid(const Eigen::Matrix3d& deformation) const {
+  if (!(deformation.determinant() > 0)) {
+    throw Inverted(fmt::format("a point of the body turned inside out: det F = {:.3e}", deformation.determinant()));
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(deformation, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d left = svd.matrixU(), right = svd.matrixV();
+  const Eigen::Vector3d l = svd.singularValues();
+  const StretchResponse w = response(l);
+  // Rows of `turn`: the deformation in the frame of the singular vectors.
+  Eigen::Matrix<double, 9, 9> turn, local = Eigen::Matrix<double, 9, 9>::Zero();
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) {
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+          turn(3 * a + b, 3 * i + j) = left(i, a) * right(j, b);
+        }
+      }
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      local(4 * i, 4 * j) = w.second(i, j);
+      if (i != j) {
+        const ShearPair pair = shear_pair(w, l, i, j);
+        local(3 * i + j, 3 * i + j) = pair.same;
+        local(3 * i + j, 3 * j + i) = pair.crossed;
+      }
+    }
+  }
+  return {left * w.first.asDiagonal() * right.transpose(), turn.transpose() * local * turn, energy(l)};
+}
+
 double HyperelasticLaw::lowest_acoustic(const Gradient& gradient) const {
   const Polar p = polar(gradient);
   const StretchResponse w = response(p.stretches);
@@ -120,6 +152,11 @@ StretchResponse NeoHookean::response(const Eigen::Vector3d& l) const {
   return w;
 }
 
+double NeoHookean::energy(const Eigen::Vector3d& l) const {
+  const double log_volume = std::log(l.prod());
+  return 0.5 * shear_ * (l.squaredNorm() - 3) - shear_ * log_volume + 0.5 * lame_ * log_volume * log_volume;
+}
+
 Foam::Foam(std::vector<FoamTerm> terms) : terms_(std::move(terms)) {
   double shear = 0;
   for (const auto& term : terms_) {
@@ -150,6 +187,18 @@ StretchResponse Foam::response(const Eigen::Vector3d& l) const {
     }
   }
   return w;
+}
+
+double Foam::energy(const Eigen::Vector3d& l) const {
+  const double log_volume = std::log(l.prod());
+  double result = 0;
+  for (const auto& [shear, a, nu] : terms_) {
+    const double beta = nu / (1 - 2 * nu);
+    // (J^(-a beta) - 1) / beta, which tends to -a ln J.
+    const double volumetric = beta == 0 ? -a * log_volume : std::expm1(-a * beta * log_volume) / beta;
+    result += 2 * shear / (a * a) * (l.array().pow(a).sum() - 3 + volumetric);
+  }
+  return result;
 }
 
 UniaxialState uniaxial(const HyperelasticLaw& law, double axial_stretch) {

@@ -14,6 +14,14 @@ struct StretchResponse {
   Eigen::Matrix3d second;
 };
 
+/// First Piola-Kirchhoff stress dW/dF, its derivative and W at a deformation gradient; component iJ of F is row 3 i +
+/// J.
+struct SolidResponse {
+  Eigen::Matrix3d stress;
+  Eigen::Matrix<double, 9, 9> tangent;
+  double energy;
+};
+
 /// A point of the body has turned inside out: no stress exists. Newton's method answers with a shorter step.
 class Inverted : public std::runtime_error {
 public:
@@ -29,9 +37,13 @@ class HyperelasticLaw : public GradientLaw {
 public:
   /// Throws std::invalid_argument when a stretch is not positive.
   virtual StretchResponse response(const Eigen::Vector3d& stretches) const = 0;
+  /// W, energy per reference volume (unit of E); 0 at rest.
+  virtual double energy(const Eigen::Vector3d& stretches) const = 0;
 
   /// Throws Inverted where det F <= 0.
   GradientResponse at(const Gradient& gradient) const override;
+  /// The same in three dimensions, F the deformation gradient. Throws Inverted where det F <= 0.
+  SolidResponse solid(const Eigen::Matrix3d& deformation) const;
 
   /// Lowest eigenvalue of the acoustic tensor Q_ik = C_iJkL N_J N_L over directions N: the law is elliptic while it is
   /// positive. Unit of E.
@@ -43,6 +55,7 @@ class NeoHookean : public HyperelasticLaw {
 public:
   explicit NeoHookean(const Material& material) : shear_(material.shear()), lame_(material.lame()) {}
   StretchResponse response(const Eigen::Vector3d& stretches) const override;
+  double energy(const Eigen::Vector3d& stretches) const override;
 
 private:
   double shear_, lame_;
@@ -62,6 +75,7 @@ public:
   /// Throws std::invalid_argument for an exponent 0, a nu outside (-1, 0.5) or a sum of mu that is not positive.
   explicit Foam(std::vector<FoamTerm> terms);
   StretchResponse response(const Eigen::Vector3d& stretches) const override;
+  double energy(const Eigen::Vector3d& stretches) const override;
   const std::vector<FoamTerm>& terms() const { return terms_; }
 
 private:
