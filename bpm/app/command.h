@@ -14,7 +14,7 @@ namespace boba {
 using CommandBody = std::function<ExitCode()>;
 
 /// Adds a subcommand to the program; the body runs once all arguments have been read. A command is one file,
-/// command_NAME.cpp, with one of the functions below, and a line in main.cpp.
+/// command_NAME.cpp, with one of the functions below, and a line in command_line.cpp.
 using AddCommand = CommandBody (*)(CLI::App& subcommand);
 
 struct Command {

@@ -249,6 +249,16 @@ TEST(SceneReader, SpecimenNeedsOneGrainAndAnOpenCell) {
   EXPECT_NE(message_of(scene, {"stage.1.ends=walls"}).find("only push"), std::string::npos);
 }
 
+TEST(SceneReader, HertzHasNoWallsAndNoClamps) {
+  const std::string scene =
+      "[material]\nhertz_modulus = 0.1\n[[template]]\nname = \"point\"\nnodes = 1\n[[species]]\ncount = 1\n"
+      "alpha = 0\n[[stage]]\ntype = \"specimen\"\n[[stage]]\ntype = \"press\"\nstrain = 0.05\n";
+  EXPECT_NE(message_of(scene).find("stage.1.type = \"press\": has no meaning with material.hertz_modulus"),
+            std::string::npos)
+      << message_of(scene);
+  EXPECT_EQ(message_of(scene, {"stage.1={type = \"hold\", time = 1.0}"}), "");
+}
+
 TEST(SceneReader, EveryKeyRefusesEveryOtherType) {
   // Each key of each table gets a value of every wrong type; each must be refused by name.
   for (const SceneSection& section : scene_schema()) {
