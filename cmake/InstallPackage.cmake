@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/bpm DESTINATION ${BOBA_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN "*.h" PATTERN app EXCLUDE)
+  FILES_MATCHING PATTERN "*.h")
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/boba)
 install(EXPORT boba_targets NAMESPACE boba:: DESTINATION ${package_folder})
