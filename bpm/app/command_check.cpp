@@ -2,6 +2,8 @@
 #include "bpm/app/command.h"
 #include "bpm/app/progress_display.h"
 #include "bpm/app/scene_estimate.h"
+#include "bpm/app/thread_warning.h"
+#include "bpm/io/printable.h"
 #include "bpm/packing/lane_layout.h"
 #include "bpm/packing/packing_numbers.h"
 #include "bpm/scene/scene_packing.h"
@@ -33,7 +35,7 @@ void print_templates(const Packing& packing, const Scene& scene) {
   for (std::size_t t = 0; t < std::min(packing.templates.size(), most_lines); ++t) {
     const GrainTemplate& grain = *packing.templates[t];
     const std::string name = t < scene.templates.size() ? scene.templates[t].name : fmt::format("network {}", t);
-    fmt::print("  {}: {} grains of {} nodes, {} bonds ({:.2f} a node)\n", name, grains[t], grain.n_nodes(),
+    fmt::print("  {}: {} grains of {} nodes, {} bonds ({:.2f} a node)\n", printable(name), grains[t], grain.n_nodes(),
                grain.bonds.size(), static_cast<double>(grain.bonds.size()) / grain.n_nodes());
   }
   if (packing.templates.size() > most_lines) {
@@ -86,7 +88,7 @@ ExitCode check_quickly(const Scene& scene) {
   const SceneSize size = expected_size(scene);
   check_memory(scene);
   fmt::print("{}: {}\nabout {:.0f} nodes, {:.0f} bytes a node, {:.1f} MB at most; {:.1f} GB are free\n",
-             scene.path.string(), scene.title, size.nodes, bytes_per_node, size.bytes * 1e-6,
+             scene.path.string(), printable(scene.title), size.nodes, bytes_per_node, size.bytes * 1e-6,
              available_memory() * 1e-9);
   return ExitCode::done;
 }
@@ -94,17 +96,19 @@ ExitCode check_quickly(const Scene& scene) {
 ExitCode check(const CheckArguments& a) {
   Scene scene = read_scene(a.scene, a.overrides);
   scene.options.threads = a.threads.value_or(scene.options.threads);
+  warn_of_threads(scene.options.threads);
   if (a.quick) {
     return check_quickly(scene);
   }
   const PoissonTable table = PoissonTable::installed();
-  const Packing packing = make_start(scene, table, [](const std::string& text) { fmt::print("{}\n", text); });
+  const Packing packing =
+      make_start(scene, table, [](const std::string& text) { fmt::print("{}\n", printable(text)); });
   const std::optional<double> modulus = effective_modulus(packing, scene.material, table);
   const StageContext context = stage_context(scene, packing, modulus);
   prepare_stages(scene, context); // says what would stop a run
   const PackingNumbers& numbers = context.numbers;
-  fmt::print("{}: {}\n{} nodes, {} grains, phi_reference {:.4g}\n", scene.path.string(), scene.title, numbers.n_nodes,
-             packing.n_grains(), numbers.phi_reference(packing.box));
+  fmt::print("{}: {}\n{} nodes, {} grains, phi_reference {:.4g}\n", scene.path.string(), printable(scene.title),
+             numbers.n_nodes, packing.n_grains(), numbers.phi_reference(packing.box));
   print_templates(packing, scene);
   fmt::print("lanes filled: {:.0f} %\n", 100.0 * LaneLayout(packing).filled());
   const bool stable = print_time_step(scene, settle_time_step(scene, packing));

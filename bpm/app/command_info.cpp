@@ -3,11 +3,11 @@
 #include "bpm/app/version.h"
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/grain/template_cache.h"
+#include "bpm/parallel/usable_cores.h"
 #include "bpm/scene/poisson_table.h"
 #include "bpm/scene/scene_schema.h"
 
 #include <fmt/format.h>
-#include <thread>
 
 namespace boba {
 
@@ -17,7 +17,7 @@ ExitCode print_info() {
   const PoissonTable table = PoissonTable::installed();
   const auto [lowest, highest] = table.alpha_range();
   fmt::print("{}\n", version_text());
-  fmt::print("instruction set: {}; cores: {}\n", kernels::best_table().name, std::thread::hardware_concurrency());
+  fmt::print("instruction set: {}; cores: {}\n", kernels::best_table().name, usable_cores());
   fmt::print("template cache: {}\n", default_cache_directory().string());
   fmt::print("table of elastic constants: alpha {:g} to {:g} k d, nu {:g} to {:g}\n  {}\n", lowest, highest,
              table.poisson(lowest, 1.0), table.poisson(highest, 1.0), table.source());

@@ -4,11 +4,13 @@
 #include "bpm/app/command.h"
 #include "bpm/app/on_ranks.h"
 #include "bpm/app/sibling.h"
+#include "bpm/app/standard_streams.h"
 #include "bpm/app/thread_waiting.h"
 #include "bpm/app/version.h"
+#include "bpm/io/printable.h"
 
+#include <algorithm>
 #include <array>
-#include <cstdio>
 #include <fmt/format.h>
 #include <hdf5.h>
 #include <new>
@@ -43,8 +45,37 @@ constexpr std::array siblings = {
 };
 
 int report(const std::string& message, ExitCode code) {
-  fmt::print(stderr, "boba: {}\n", message);
+  print_error("boba: " + printable(message));
   return static_cast<int>(code);
+}
+
+/// The first word must be a command; the parser itself would only say that one is missing.
+std::string unknown_command(int argc, char** argv) {
+  const std::string word = argc > 1 ? argv[1] : "";
+  const auto is_word = [&word](const auto& known) { return word == known.name; };
+  if (word.empty() || word.front() == '-' || std::any_of(commands.begin(), commands.end(), is_word) ||
+      std::any_of(siblings.begin(), siblings.end(), is_word)) {
+    return "";
+  }
+  std::string names;
+  for (const auto& command : commands) {
+    names += std::string(command.name) + ", ";
+  }
+  for (const auto& sibling : siblings) {
+    names += std::string(sibling.name) + (&sibling == &siblings.back() ? "" : ", ");
+  }
+  const std::string advice = word.ends_with(".toml") ? fmt::format("; a scene is run by: boba run {}", word) : "";
+  return fmt::format("{}: there is no such command{}; there are {}", word, advice, names);
+}
+
+/// Standard output is a command's result, unless the command writes files.
+ExitCode with_output_written(const CLI::App& sub, ExitCode code) {
+  const std::string failure = standard_output_failure();
+  const bool writes_files = sub.get_name() == "run" || sub.get_name() == "resume";
+  if (!failure.empty() && code == ExitCode::done && !writes_files) {
+    throw std::runtime_error("standard output cannot be written: " + failure);
+  }
+  return code;
 }
 
 int run_command(int argc, char** argv) {
@@ -52,6 +83,12 @@ int run_command(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", version_text());
   app.footer("Exit codes: 0 done, 1 failed, 2 wrong input, 3 a check failed, 75 stopped with a checkpoint.");
+  if (const std::string unknown = unknown_command(argc, argv); !unknown.empty()) {
+    if (is_other_rank()) {
+      wait_for_first_rank(5000);
+    }
+    return report(unknown, ExitCode::wrong_input);
+  }
   std::vector<std::pair<CLI::App*, CommandBody>> bodies;
   for (const Command& command : commands) {
     CLI::App* sub = app.add_subcommand(command.name, command.summary);
@@ -63,18 +100,20 @@ int run_command(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) { // --help, --version
-    return app.exit(success);
+    const int code = app.exit(success);
+    with_output_written(app, ExitCode::done);
+    return code;
   } catch (const CLI::ParseError& error) {
     if (is_other_rank()) {
-      // Rank 0 tells, and fails for all: a launcher that sees another rank fail first ends rank 0 before it has spoken.
-      return static_cast<int>(ExitCode::done);
+      // A launcher that sees another rank fail first ends rank 0 before it has spoken.
+      wait_for_first_rank(5000);
     }
     app.exit(error);
     return static_cast<int>(ExitCode::wrong_input);
   }
   for (const auto& [sub, body] : bodies) {
     if (sub->parsed()) {
-      return static_cast<int>(body());
+      return static_cast<int>(with_output_written(*sub, body()));
     }
   }
   return static_cast<int>(ExitCode::wrong_input);
@@ -86,6 +125,7 @@ int run_command_line(int argc, char** argv) {
   // A file that could not be written cannot be closed either: HDF5's own clean-up at the end would crash on it. Every
   // file is closed by its owner.
   H5dont_atexit();
+  secure_standard_streams();
   shorten_thread_waiting(argv);
   try {
     for (const Sibling& sibling : siblings) {

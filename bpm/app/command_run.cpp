@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/app/argument_checks.h"
 #include "bpm/app/command.h"
 #include "bpm/app/on_ranks.h"
+#include "bpm/app/run_files.h"
 #include "bpm/app/run_session.h"
+#include "bpm/app/standard_streams.h"
+#include "bpm/app/thread_warning.h"
 #include "bpm/io/input_error.h"
 #include "bpm/io/output_file.h"
+#include "bpm/io/printable.h"
 #include "bpm/parallel/message_passing.h"
 #include "bpm/parallel/share_packing.h"
 #include "bpm/scene/scene_packing.h"
 
 #include <algorithm>
+#include <chrono>
 #include <fmt/format.h>
 
 namespace boba {
@@ -24,14 +30,31 @@ struct RunArguments {
   bool quiet = false;
 };
 
-/// The scene as it was given, with the command line's changes as comments.
-void copy_scene(const Scene& scene, const OutputFolder& folder, bool force) {
-  OutputFile file(folder.scene(), force ? FileMode::overwrite : FileMode::create);
+/// The scene as it was given, with the command line's changes as comments; an older one is replaced in one go.
+void copy_scene(const Scene& scene, const OutputFolder& folder) {
+  const std::filesystem::path beside = folder.scene().string() + ".part";
+  OutputFile file(beside, FileMode::overwrite);
   file.write(scene.text);
+  if (!scene.overrides.empty() && !scene.text.ends_with('\n')) {
+    file.write("\n");
+  }
   for (const std::string& assignment : scene.overrides) {
     file.print("# --set {}\n", assignment);
   }
   file.close();
+  std::filesystem::rename(beside, folder.scene());
+}
+
+/// Takes the folder for this run, and looks once more whether it is free: another run may have ended there meanwhile.
+void take_folder(RunSetup& setup, bool force) {
+  setup.folder.create();
+  setup.lock = std::make_shared<FolderLock>(setup.folder.lock(), "boba run");
+  check_free(setup.folder, setup.scene, force);
+  if (force) {
+    remove_written(setup.folder);
+  }
+  write_file_list(setup.folder, files_of_run(setup.scene));
+  copy_scene(setup.scene, setup.folder);
 }
 
 /// A scene's folder has no ".." in it; a link on the way could lead outside all the same.
@@ -57,12 +80,14 @@ RunSetup prepare(const RunArguments& a, const Ranks& ranks) {
   const OutputFolder folder(a.output.empty() ? scene.output.directory : a.output);
   RunSetup setup{std::move(scene), folder, {}, {}, std::nullopt, a.quiet, std::nullopt};
   if (ranks.is_root()) {
-    folder.check_free(a.force);
+    if (const std::string holder = FolderLock::holder_of(folder.lock()); !holder.empty()) {
+      throw InputError(fmt::format("output: {} is in use by {}", folder.root().string(), holder));
+    }
+    check_free(folder, setup.scene, a.force);
     const PoissonTable table = PoissonTable::installed();
     const auto narrate = [&a](const std::string& text) {
       if (!a.quiet) {
-        fmt::print("{}\n", text);
-        std::fflush(stdout);
+        print_line(printable(text));
       }
     };
     setup.packing = make_start(setup.scene, table, narrate);
@@ -77,20 +102,25 @@ RunSetup prepare(const RunArguments& a, const Ranks& ranks) {
 }
 
 ExitCode run(const RunArguments& a, const Ranks& ranks) {
+  const auto begin = std::chrono::steady_clock::now();
+  outlive_standard_output();
   std::optional<RunSetup> setup;
   ranks.collectively([&] { setup = prepare(a, ranks); });
+  setup->begin = begin;
   share_packing(setup->packing, ranks);
   ranks.broadcast(setup->modulus);
   ranks.broadcast(setup->scene.options.dt);
   if (ranks.is_distributed() && !a.threads) {
     setup->scene.options.threads = std::min(setup->scene.options.threads, threads_of_a_rank(ranks));
   }
+  if (ranks.is_root()) {
+    warn_of_threads(setup->scene.options.threads);
+  }
   ranks.collectively([&] {
     setup->stages = prepare_stages(setup->scene, stage_context(setup->scene, setup->packing, setup->modulus));
     if (ranks.is_root()) {
       // Everything that can be wrong with the input has been found by now: from here on files are written.
-      setup->folder.create(a.force);
-      copy_scene(setup->scene, setup->folder, a.force);
+      take_folder(*setup, a.force);
     }
   });
   return run_scene(std::move(*setup), ranks);
@@ -106,8 +136,9 @@ CommandBody add_run_command(CLI::App& app) {
       ->allow_extra_args(false);
   app.add_option("--output", a->output, "output folder (default: the scene's, below the current folder)");
   app.add_option("--threads", a->threads, "threads (default: the scene's, or all cores)")->check(CLI::Range(1, 1024));
-  app.add_option("--wall-time", a->wall_time, "stop with a checkpoint after so many seconds")
-      ->check(CLI::PositiveNumber);
+  app.add_option("--wall-time", a->wall_time,
+                 "stop with a checkpoint after so many seconds, building and placing included")
+      ->check(positive_seconds());
   app.add_flag("--force", a->force, "replace the run that is in the output folder");
   app.add_flag("--quiet", a->quiet, "print nothing but errors");
   return [a] { return on_all_ranks([a](const Ranks& ranks) { return run(*a, ranks); }); };

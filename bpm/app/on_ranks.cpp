@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/on_ranks.h"
 
+#include "bpm/app/standard_streams.h"
+#include "bpm/io/printable.h"
 #include "bpm/parallel/message_passing.h"
 
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <fmt/format.h>
 #include <stdexcept>
@@ -15,18 +16,14 @@ namespace boba {
 
 namespace {
 
-/// How long a rank waits with its last words for another that has the same to say.
-constexpr std::chrono::milliseconds patience(1500);
-
 void tell(int rank, const std::string& message) {
-  fmt::print(stderr, "boba: rank {}: {}\n", rank, message);
-  std::fflush(stderr);
+  print_error(fmt::format("boba: rank {}: {}", rank, printable(message)));
 }
 
 /// An error that the others may not know of.
 [[noreturn]] void end_all(const MessagePassing& mpi, const std::string& message, ExitCode code) {
   if (!mpi.ranks().is_root()) {
-    std::this_thread::sleep_for(patience);
+    wait_for_first_rank(1500);
   }
   tell(mpi.ranks().rank(), message);
   mpi.abort(static_cast<int>(code));
@@ -53,6 +50,10 @@ ExitCode on_all_ranks(const std::function<ExitCode(const Ranks&)>& work) {
   } catch (const std::exception& error) {
     end_all(mpi, error.what(), ExitCode::failed);
   }
+}
+
+void wait_for_first_rank(int milliseconds) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
 }
 
 bool is_other_rank() {

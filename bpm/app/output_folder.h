@@ -5,12 +5,17 @@
 
 namespace boba {
 
+/// Name of the lock in an output folder, see FolderLock.
+constexpr const char* lock_file_name = "run.lock";
+
 /// The folder of one run and the names in it. Everything that a run writes lies here.
 class OutputFolder {
 public:
   explicit OutputFolder(std::filesystem::path root) : root_(std::move(root)) {}
 
   const std::filesystem::path& root() const { return root_; }
+  std::filesystem::path lock() const { return root_ / lock_file_name; }
+  std::filesystem::path file_list() const { return root_ / "files.txt"; }
   std::filesystem::path scene() const { return root_ / "scene.toml"; }
   std::filesystem::path log() const { return root_ / "run.log"; }
   std::filesystem::path table() const { return root_ / "table.csv"; }
@@ -20,11 +25,8 @@ public:
   std::filesystem::path measures() const { return root_ / "measures"; }
   std::filesystem::path checkpoints() const { return root_ / "checkpoints"; }
 
-  /// \throws InputError when the folder holds anything and `force` is false, or when it is no folder.
-  void check_free(bool force) const;
-  /// Makes the folder; with `force` removes what an earlier run wrote there, and only that.
-  /// \throws std::runtime_error when the system refuses.
-  void create(bool force) const;
+  /// Makes the folder where it is missing. \throws std::runtime_error when the system refuses.
+  void create() const;
 
 private:
   std::filesystem::path root_;

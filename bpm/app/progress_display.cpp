@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/progress_display.h"
 
+#include "bpm/app/standard_streams.h"
 #include "bpm/dynamics/simulation.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -96,18 +96,16 @@ void ProgressDisplay::observe(const Simulation& simulation, const StageProgress&
   }
   const std::string text = line(progress, simulation.totals().pressure, simulation.step());
   if (terminal_) {
-    fmt::print("\r\x1b[K{}", text); // back to the line's beginning, clear it
+    print_text("\r\x1b[K" + text); // back to the line's beginning, clear it
     drawn_ = true;
   } else {
-    fmt::print("{}\n", text);
+    print_line(text);
   }
-  std::fflush(stdout);
 }
 
 void ProgressDisplay::finish() {
   if (drawn_) {
-    fmt::print("\n");
-    std::fflush(stdout);
+    print_line("");
     drawn_ = false;
   }
 }

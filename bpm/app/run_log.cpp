@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/run_log.h"
 
+#include "bpm/app/standard_streams.h"
 #include "bpm/io/output_file.h"
+#include "bpm/io/printable.h"
 
-#include <cstdio>
-#include <fmt/format.h>
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/null_sink.h>
 #include <spdlog/spdlog.h>
@@ -46,20 +46,19 @@ RunLog::RunLog(const std::filesystem::path& file, bool quiet) : quiet_(quiet) {
 
 // Texts are handed over as arguments, never as format strings: they may hold braces from a scene.
 void RunLog::note(const std::string& text) {
-  logger_->info("{}", text);
+  logger_->info("{}", printable(text));
 }
 
 void RunLog::say(const std::string& text) {
   note(text);
   if (!quiet_) {
-    fmt::print("{}\n", text);
-    std::fflush(stdout);
+    print_line(printable(text));
   }
 }
 
 void RunLog::last_words(const std::string& why, const std::string& advice) noexcept {
   try {
-    logger_->error("{}", why);
+    logger_->error("{}", printable(why));
     say(advice);
   } catch (const std::exception&) { // the log may be what could not be written; that is told by whoever caught it first
   }

@@ -2,7 +2,9 @@
 #include "bpm/app/run_session.h"
 
 #include "bpm/app/checkpoint_observer.h"
+#include "bpm/app/output_record.h"
 #include "bpm/app/progress_display.h"
+#include "bpm/app/run_files.h"
 #include "bpm/app/run_log.h"
 #include "bpm/app/run_writers.h"
 #include "bpm/app/stage_summary.h"
@@ -56,9 +58,11 @@ public:
   Session(RunSetup setup, const Ranks& ranks)
       : setup_(std::move(setup)), ranks_(ranks),
         simulation_(std::move(setup_.packing), setup_.scene.material, options_on(ranks)),
-        numbers_(simulation_.packing(), setup_.scene.material, setup_.modulus), stop_(setup_.scene.wall_time),
+        numbers_(simulation_.packing(), setup_.scene.material, setup_.modulus),
+        stop_(setup_.scene.wall_time, setup_.begin),
         log_(ranks.is_root() ? setup_.folder.log() : "", setup_.quiet || !ranks.is_root()), summary_(numbers_),
-        progress_(setup_.modulus.value_or(0.0), numbers_.n_nodes, setup_.quiet, ranks) {
+        progress_(setup_.modulus.value_or(0.0), numbers_.n_nodes, setup_.quiet, ranks),
+        output_record_(setup_.folder, files_of_run(setup_.scene)) {
     if (setup_.restart) {
       simulation_.restore(setup_.restart->state);
       setup_.restart->state = {};
@@ -71,6 +75,11 @@ public:
         [this](CheckpointData& data) {
           writers_.wait(); // what a checkpoint points back to is on disk
           store_writers(data, writers_);
+          if (ranks_.is_root()) {
+            data.text[output_record_name] =
+                output_record_.text(simulation_.step(), writers_.trajectory ? writers_.trajectory->n_frames() : 0,
+                                    writers_.trajectory ? writers_.frames.front()->last_step() : -1);
+          }
         });
   }
 
@@ -104,6 +113,9 @@ private:
     log_.note(version_text() + ", instruction set " + simulation_.instruction_set());
     for (const std::string& assignment : setup_.scene.overrides) {
       log_.note("--set " + assignment);
+    }
+    for (const std::string& gap : setup_.gaps) {
+      log_.say("gap accepted: " + gap);
     }
     const std::string begin = setup_.restart
                                   ? fmt::format("going on at step {} from {}", simulation_.step(), setup_.restart->file)
@@ -186,6 +198,7 @@ private:
   StageSummary summary_;
   ProgressDisplay progress_;
   RunWriters writers_;
+  OutputRecord output_record_;
   std::unique_ptr<CheckpointObserver> checkpoints_;
 };
 

@@ -3,10 +3,14 @@
 
 #include "bpm/app/output_folder.h"
 #include "bpm/dynamics/simulation.h"
+#include "bpm/io/folder_lock.h"
 #include "bpm/scene/scene.h"
 #include "bpm/scene/scene_stages.h"
 
+#include <chrono>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace boba {
@@ -29,6 +33,13 @@ struct RunSetup {
     std::vector<double> motion;           ///< of MeasureTables::save_motion; empty when motion is not measured
   };
   std::optional<Restart> restart;
+
+  /// Files that are missing are begun without what they held: the user accepts the gaps.
+  bool accept_gaps = false;
+  std::vector<std::string> gaps; ///< what is missing, in words
+
+  std::chrono::steady_clock::time_point begin; ///< of the command: the wall-time limit counts from here
+  std::shared_ptr<const FolderLock> lock;      ///< of the folder; on rank 0
 };
 
 } // namespace boba

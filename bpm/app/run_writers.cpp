@@ -31,7 +31,8 @@ TrajectoryWriter trajectory_writer(const RunSetup& setup, const Simulation& simu
   const Topology topology = simulation.packing().topology(true);
   const std::filesystem::path path = setup.folder.trajectory();
   // Before its first frame the file has nothing to be kept, and if that frame was cut off HDF5 cannot read it at all.
-  if (setup.restart && last_step >= 0) {
+  const bool is_gap = setup.accept_gaps && !std::filesystem::exists(path);
+  if (setup.restart && last_step >= 0 && !is_gap) {
     return TrajectoryWriter::go_on(path, topology, last_step, nodes_by_others);
   }
   TrajectoryOrigin origin;

@@ -7,12 +7,13 @@
 
 namespace boba {
 
-/// Why a run should stop now: SIGINT, SIGTERM, SIGUSR1 (which mpirun and Slurm hand on to all ranks), or its wall-time
-/// limit. A second SIGINT ends the program at once.
+/// Why a run should stop now: SIGINT, SIGTERM, SIGHUP (the terminal is gone), SIGUSR1 (which mpirun and Slurm hand on
+/// to all ranks), or its wall-time limit. A second SIGINT ends the program at once.
 class StopRequest {
 public:
-  /// Takes over the signals until it is destroyed. `wall_time`: seconds from now.
-  explicit StopRequest(std::optional<double> wall_time);
+  /// Takes over the signals, but for those that are ignored, until it is destroyed. `wall_time`: seconds from `begin`.
+  explicit StopRequest(std::optional<double> wall_time,
+                       std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now());
   ~StopRequest();
   StopRequest(const StopRequest&) = delete;
   StopRequest& operator=(const StopRequest&) = delete;
@@ -22,7 +23,7 @@ public:
   std::string reason() const;
 
 private:
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point begin_;
   std::optional<double> wall_time_;
 };
 

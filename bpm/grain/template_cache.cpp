@@ -4,9 +4,13 @@
 #include "bpm/grain/build_template.h"
 #include "bpm/grain/template_file.h"
 
+#include <array>
 #include <cstdlib>
 #include <fmt/format.h>
+#include <pwd.h>
 #include <stdexcept>
+#include <string_view>
+#include <unistd.h>
 
 namespace boba {
 
@@ -26,7 +30,13 @@ fs::path default_cache_directory() {
   if (const std::string home = variable("HOME"); !home.empty()) {
     return fs::path(home) / ".cache" / "boba";
   }
-  throw std::runtime_error("no place for the grain template cache: set BOBA_CACHE_DIR, XDG_CACHE_HOME or HOME");
+  std::array<char, 4096> room{};
+  passwd entry{}, *found = nullptr;
+  if (getpwuid_r(getuid(), &entry, room.data(), room.size(), &found) == 0 && found != nullptr &&
+      std::string_view(entry.pw_dir).starts_with("/")) {
+    return fs::path(entry.pw_dir) / ".cache" / "boba";
+  }
+  return {}; // nowhere: templates are built each time
 }
 
 TemplateCache::TemplateCache(fs::path directory) : directory_(std::move(directory)) {}
@@ -36,19 +46,22 @@ fs::path TemplateCache::file_of(const TemplateSpec& spec) const {
 }
 
 bool TemplateCache::contains(const TemplateSpec& spec) const {
-  return read_template(file_of(spec), canonical_text(spec)).has_value();
+  return !directory_.empty() && read_template(file_of(spec), canonical_text(spec)).has_value();
 }
 
 GrainTemplate TemplateCache::get(const TemplateSpec& spec, const std::function<void()>& before_build) const {
   validate(spec);
   const std::string text = canonical_text(spec);
-  if (auto stored = read_template(file_of(spec), text)) {
+  if (auto stored = directory_.empty() ? std::nullopt : read_template(file_of(spec), text)) {
     return *std::move(stored);
   }
   if (before_build) {
     before_build();
   }
   GrainTemplate grain = build_template(spec);
+  if (directory_.empty()) {
+    return grain;
+  }
   std::error_code no_directory;
   fs::create_directories(directory_, no_directory);
   try {

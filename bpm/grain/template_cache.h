@@ -9,8 +9,8 @@
 
 namespace boba {
 
-/// $BOBA_CACHE_DIR, else $XDG_CACHE_HOME/boba, else $HOME/.cache/boba.
-/// \throws std::runtime_error when none of the three variables is set.
+/// $BOBA_CACHE_DIR, else $XDG_CACHE_HOME/boba, else $HOME/.cache/boba; without HOME the user's home as the system knows
+/// it. Empty when there is none: templates are then built each time.
 std::filesystem::path default_cache_directory();
 
 /// Templates on disk, one HDF5 file each, named by the hash of the specification.

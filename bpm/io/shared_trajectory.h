@@ -26,6 +26,8 @@ public:
   /// A compressed frame is one piece: rank 0 gathers it and writes it alone.
   void write(const Snapshot& own);
   void close();
+  /// Frames in the file, on rank 0.
+  std::int64_t n_frames() const { return writer_ ? writer_->n_frames() : 0; }
 
 private:
   void write_together(const Snapshot& own);

@@ -24,21 +24,21 @@ std::string header_of(const std::vector<std::string>& columns) {
   return fmt::format("{}\n", fmt::join(columns, ","));
 }
 
-/// Bytes up to the end of the last whole row with a step up to `last_step`; `text` begins behind the header.
+/// Bytes up to the end of the last whole row with a step up to `last_step`; `text` begins behind the header. Rows that
+/// are no rows any more, but stand before one that is, are kept: somebody edited them.
 std::size_t kept_length(const std::string& text, std::int64_t last_step) {
-  std::size_t kept = 0;
-  while (true) {
-    const std::size_t end = text.find('\n', kept);
-    if (end == std::string::npos) {
-      return kept;
-    }
+  std::size_t kept = 0, begin = 0;
+  for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
     std::int64_t step = 0;
-    const auto [stop, error] = std::from_chars(text.data() + kept, text.data() + end, step);
-    if (error != std::errc() || (*stop != ',' && *stop != '\n') || step > last_step) {
-      return kept;
+    const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + end, step);
+    const bool is_row = error == std::errc() && (*stop == ',' || *stop == '\n');
+    if (is_row && step > last_step) {
+      break;
     }
-    kept = end + 1;
+    begin = end + 1;
+    kept = is_row ? begin : kept;
   }
+  return kept;
 }
 
 } // namespace

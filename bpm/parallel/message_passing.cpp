@@ -2,12 +2,12 @@
 #include "bpm/parallel/message_passing.h"
 
 #include "bpm/parallel/star_forest.h"
+#include "bpm/parallel/usable_cores.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <mpi.h>
 #include <stdexcept>
-#include <thread>
 #include <unistd.h>
 
 namespace boba {
@@ -55,17 +55,19 @@ void MessagePassing::abort(int exit_code) const {
 }
 
 int threads_of_a_rank(const Ranks& ranks) {
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency())); // those it is bound to
   if (!ranks.is_distributed()) {
-    return cores;
+    return usable_cores();
   }
+  const int cores = cores_of_mask(); // those it is bound to
   const int on_machine = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
   int ranks_here = 1;
   MPI_Comm_size(machine, &ranks_here);
   MPI_Comm_free(&machine);
-  return cores < on_machine ? cores : std::max(1, on_machine / ranks_here);
+  const int bound = cores < on_machine ? cores : std::max(1, on_machine / ranks_here);
+  const int quota = cores_of_quota(); // of all ranks here together
+  return quota > 0 ? std::min(bound, std::max(1, quota / ranks_here)) : bound;
 }
 
 } // namespace boba

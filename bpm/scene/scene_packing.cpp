@@ -18,8 +18,10 @@ Templates build_templates(const Scene& scene, const Narrator& narrate) {
   Templates templates;
   for (const SceneTemplate& t : scene.templates) {
     const auto before = [&] {
-      narrate(fmt::format("building the grain template \"{}\" (about {:.0f} nodes); once, then it is read from {}",
-                          t.name, expected_nodes(t.spec), cache.file_of(t.spec).string()));
+      const std::filesystem::path file = cache.file_of(t.spec);
+      narrate(fmt::format("building the grain template \"{}\" (about {:.0f} nodes){}", t.name, expected_nodes(t.spec),
+                          file.has_parent_path() ? "; once, then it is read from " + file.string()
+                                                 : "; there is no home folder and no BOBA_CACHE_DIR to keep it in"));
     };
     templates.push_back(std::make_shared<const GrainTemplate>(cache.get(t.spec, before)));
   }

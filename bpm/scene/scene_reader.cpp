@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/input_error.h"
+#include "bpm/parallel/usable_cores.h"
+#include "bpm/scene/override_text.h"
 #include "bpm/scene/scene.h"
 #include "bpm/scene/scene_schema.h"
 #include "bpm/scene/scene_stages.h"
@@ -11,7 +13,6 @@
 #include <fmt/ranges.h>
 #include <set>
 #include <sstream>
-#include <thread>
 #include <utility>
 
 namespace boba {
@@ -24,7 +25,7 @@ void read_run(const SceneTable& table, Scene& scene) {
   scene.options.skin = table.real("skin", scene.options.skin);
   scene.options.precision = table.text("precision", "double") == "mixed" ? Precision::mixed : Precision::full;
   const auto threads = static_cast<int>(table.integer("threads", 0));
-  scene.options.threads = threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  scene.options.threads = threads > 0 ? threads : usable_cores();
   scene.wall_time = table.maybe_real("wall_time");
 }
 
@@ -252,9 +253,11 @@ Scene read_tree(const std::string& text, const std::filesystem::path& path, cons
   Scene scene;
   scene.path = path;
   scene.text = text;
-  scene.overrides = overrides;
-  TomlNode tree = parse_toml(text, path.string());
   for (const std::string& assignment : overrides) {
+    scene.overrides.push_back(one_line_override(assignment));
+  }
+  TomlNode tree = parse_toml(text, path.string());
+  for (const std::string& assignment : scene.overrides) {
     apply_override(tree, assignment);
   }
   const SceneTables tables(scene_schema(), std::move(tree), path.string());

@@ -22,6 +22,7 @@ std::string shown(const toml::node& node) {
     text = '"' + words->get() + '"';
   } else if (const auto* real = node.as_floating_point()) {
     text = fmt::format("{}", real->get());
+    text += text.find_first_not_of("-0123456789") == std::string::npos ? ".0" : ""; // 7.0 is no whole number
   } else {
     std::ostringstream out;
     node.visit([&out](const auto& value) { out << value; });

@@ -14,6 +14,9 @@ public:
   void check(const SceneTable&, const SceneGrains&) const override {}
   bool cell_is_open(const SceneGrains&) const override { return false; }
   Packing make(const StartContext& context) const override;
+  std::vector<std::filesystem::path> files() const override {
+    return state_ ? std::vector{reference_, *state_} : std::vector{reference_};
+  }
 
 private:
   std::optional<std::int64_t> timestep() const;

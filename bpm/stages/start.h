@@ -80,6 +80,8 @@ public:
   /// Is the cell open on its sides, as that of a specimen is?
   virtual bool cell_is_open(const SceneGrains& grains) const = 0;
   virtual Packing make(const StartContext& context) const = 0;
+  /// The files that it reads: a run may not replace them.
+  virtual std::vector<std::filesystem::path> files() const { return {}; }
 };
 
 } // namespace boba

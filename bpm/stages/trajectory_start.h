@@ -14,6 +14,7 @@ public:
   void check(const SceneTable&, const SceneGrains&) const override {}
   bool cell_is_open(const SceneGrains&) const override { return false; }
   Packing make(const StartContext& context) const override;
+  std::vector<std::filesystem::path> files() const override { return {file_}; }
 
 private:
   std::filesystem::path file_;

@@ -67,22 +67,23 @@ MeasureTables::MeasureTables(std::filesystem::path folder, const Topology& topol
     undeformed_.push_back(hull ? std::optional(grain_shape(*hull, plan_.facets)) : std::nullopt);
   }
   std::filesystem::create_directories(folder_);
-  open_tables(mode, last_step);
+  open(mode, last_step);
 }
 
-void MeasureTables::open(const std::string& name, const std::vector<std::string>& columns, FileMode mode,
-                         std::int64_t last_step) {
-  std::vector<std::string> all = frame_columns;
-  all.insert(all.end(), columns.begin(), columns.end());
-  const std::filesystem::path path = folder_ / (name + ".csv");
-  tables_.emplace(name,
-                  mode == FileMode::append ? TableWriter::go_on(path, all, last_step) : TableWriter(path, all, mode));
+void MeasureTables::open(FileMode mode, std::int64_t last_step) {
+  for (const auto& [name, columns] : tables_of(plan_)) {
+    const std::filesystem::path path = folder_ / (name + ".csv");
+    tables_.emplace(name, mode == FileMode::append ? TableWriter::go_on(path, columns, last_step)
+                                                   : TableWriter(path, columns, mode));
+  }
 }
 
-void MeasureTables::open_tables(FileMode mode, std::int64_t last_step) {
+std::vector<MeasureTable> MeasureTables::tables_of(const MeasurePlan& plan) {
+  std::vector<MeasureTable> tables;
   const auto table = [&](MeasureKind kind, const std::string& name, const std::vector<std::string>& columns) {
-    if (plan_.has(kind)) {
-      open(name, columns, mode, last_step);
+    if (plan.has(kind)) {
+      tables.push_back({name, frame_columns});
+      tables.back().columns.insert(tables.back().columns.end(), columns.begin(), columns.end());
     }
   };
   using enum MeasureKind;
@@ -106,7 +107,7 @@ void MeasureTables::open_tables(FileMode mode, std::int64_t last_step) {
     summary.push_back(std::string("undeformed_") + name);
   }
   table(shape, "shape", summary);
-  if (plan_.facet_sensitivity) {
+  if (plan.facet_sensitivity) {
     table(shape, "facet_sensitivity",
           {"min_cosine", "min_area_share", "facets_mean", "faceted_share", "undeformed_facets",
            "undeformed_faceted_share"});
@@ -126,6 +127,7 @@ void MeasureTables::open_tables(FileMode mode, std::int64_t last_step) {
         {"non_affine_square_d2", "d2min_mean_d2", "changed_share", "lost_per_grain", "gained_per_grain"});
   table(motion, "grain_motion",
         {"grain", "displacement_x_d", "displacement_y_d", "displacement_z_d", "d2min_d2", "lost", "gained"});
+  return tables;
 }
 
 void MeasureTables::write(const std::string& table, const Snapshot& snapshot, const Row& values) {

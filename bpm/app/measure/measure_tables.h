@@ -18,6 +18,12 @@
 
 namespace boba {
 
+/// A table of a measure: NAME.csv and its columns, the step first.
+struct MeasureTable {
+  std::string name;
+  std::vector<std::string> columns;
+};
+
 /// Measures frames and writes what was found into the tables of one folder.
 ///
 /// Tables, columns and units: docs/formats-measure.md. Frames are given in the order of time. With several ranks all
@@ -30,6 +36,9 @@ public:
   MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan,
                 const UndeformedGrains& undeformed, FileMode mode, std::int64_t last_step = -1,
                 const Ranks& ranks = Ranks::alone());
+
+  /// The tables that a plan's measures write. Source: docs/formats-measure.md.
+  static std::vector<MeasureTable> tables_of(const MeasurePlan& plan);
 
   /// Collective. Positions are needed on every rank when the plan needs_all_ranks, all else on rank 0.
   /// \throws std::invalid_argument for a frame that cannot be measured, std::runtime_error when a table cannot be
@@ -66,10 +75,9 @@ private:
     measure::NeighbourLists neighbours;
   };
 
-  void open(const std::string& name, const std::vector<std::string>& columns, FileMode mode, std::int64_t last_step);
   static std::vector<std::string> order_columns();
   static std::vector<std::string> grain_order_columns();
-  void open_tables(FileMode mode, std::int64_t last_step);
+  void open(FileMode mode, std::int64_t last_step);
   void write(const std::string& table, const Snapshot& snapshot, const Row& values);
   void note(const std::string& quantity, const Snapshot& snapshot, double value);
   double grain_number(int grain) const;
