@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/parallel/usable_cores.h"
-
 #include "tests/support/temporary_folder.h"
 
 #include <sched.h>

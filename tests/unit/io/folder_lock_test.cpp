@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/folder_lock.h"
-
 #include "bpm/io/input_error.h"
 #include "bpm/io/printable.h"
 #include "tests/support/temporary_folder.h"
@@ -50,9 +49,9 @@ INSTANTIATE_TEST_SUITE_P(Means, FolderLockTest, testing::Values(FolderLock::Mean
 
 TEST(FolderLock, ARecordOfAnotherMachineHolds) {
   const TemporaryFolder folder;
-  const auto file = folder.file("run.lock", "process 1234567 on another-machine, since 2026-01-01 00:00:00 +0000 (x)\n");
-  const std::string message =
-      message_of<InputError>([&] { FolderLock(file, "second", FolderLock::Means::record); });
+  const auto file =
+      folder.file("run.lock", "process 1234567 on another-machine, since 2026-01-01 00:00:00 +0000 (x)\n");
+  const std::string message = message_of<InputError>([&] { FolderLock(file, "second", FolderLock::Means::record); });
   EXPECT_NE(message.find("another-machine"), std::string::npos) << message;
   EXPECT_NE(message.find("remove"), std::string::npos) << message;
 }
@@ -71,7 +70,9 @@ TEST(FolderLock, TellsItsHolderWithoutTakingIt) {
 
 TEST(Printable, WritesControlCharactersOut) {
   EXPECT_EQ(printable("a\nb\tc\x1b[31m\x7f"), "a\\nb\\tc\\x1b[31m\\x7f");
-  EXPECT_EQ(printable("\xc2\x9b" "31m"), "\\x9b31m");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "31m"),
+            "\\x9b31m");
   EXPECT_EQ(printable("K\xc3\xb6rner \xc2\xb5 \xce\xb3"), "K\xc3\xb6rner \xc2\xb5 \xce\xb3"); // letters stay
 }
 
