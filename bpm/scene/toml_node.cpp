@@ -16,21 +16,100 @@ namespace {
 
 constexpr std::size_t longest_shown = 60;
 
-std::string shown(const toml::node& node) {
-  std::string text;
+// What a scene may hold. A parser may go down one call for every level, so depth is looked at before it begins.
+constexpr int deepest_nesting = 32, longest_dotted_key = 32;
+
+/// The value as text, no further than a message shows it: an array is looked at only as far as that.
+void append(std::string& text, const toml::node& node) {
+  const auto append_all = [&](const auto& container, char open, char close, auto append_one) {
+    text += open;
+    const char* before = " ";
+    for (auto&& entry : container) {
+      if (text.size() > longest_shown) {
+        return;
+      }
+      text += before;
+      append_one(entry);
+      before = ", ";
+    }
+    text += container.empty() ? "" : " ";
+    text += close;
+  };
   if (const auto* words = node.as_string()) {
-    text = '"' + words->get() + '"';
+    text += '"' + words->get() + '"';
   } else if (const auto* real = node.as_floating_point()) {
-    text = fmt::format("{}", real->get());
-    text += text.find_first_not_of("-0123456789") == std::string::npos ? ".0" : ""; // 7.0 is no whole number
+    const std::string number = fmt::format("{}", real->get());
+    text += number;
+    text += number.find_first_not_of("-0123456789") == std::string::npos ? ".0" : ""; // 7.0 is no whole number
+  } else if (const auto* array = node.as_array()) {
+    append_all(*array, '[', ']', [&](const toml::node& item) { append(text, item); });
+  } else if (const auto* table = node.as_table()) {
+    append_all(*table, '{', '}', [&](const auto& member) {
+      text += std::string(member.first.str()) + " = ";
+      append(text, member.second);
+    });
   } else {
     std::ostringstream out;
     node.visit([&out](const auto& value) { out << value; });
-    text = out.str();
+    text += out.str();
   }
+}
+
+/// For a message: one line, shortened.
+std::string on_one_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
   return text.size() > longest_shown ? text.substr(0, longest_shown) + "..." : text;
+}
+
+std::string shown(const toml::node& node) {
+  std::string text;
+  append(text, node);
+  return on_one_line(std::move(text));
+}
+
+/// Behind the string that begins at `at`, with one or three of its quotes; the end of the text when it has no end.
+std::size_t behind_string(const std::string& text, std::size_t at) {
+  const char quote = text[at];
+  const bool is_long = text.compare(at, 3, std::string(3, quote)) == 0;
+  const std::string end = std::string(is_long ? 3 : 1, quote);
+  for (at += end.size(); at < text.size(); ++at) {
+    if (text[at] == '\\' && quote == '"') {
+      ++at;
+    } else if (text.compare(at, end.size(), end) == 0) {
+      return at + end.size();
+    } else if (text[at] == '\n' && !is_long) {
+      return at;
+    }
+  }
+  return text.size();
+}
+
+/// \throws InputError when brackets or dotted keys go deeper than any scene needs.
+void check_depth(const std::string& text, const std::string& file) {
+  int depth = 0, dots = 0, line = 1;
+  for (std::size_t at = 0; at < text.size();) {
+    const char c = text[at];
+    if (c == '"' || c == '\'') {
+      const std::size_t end = behind_string(text, at);
+      line += static_cast<int>(std::count(text.begin() + static_cast<std::ptrdiff_t>(at),
+                                          text.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
+      at = end;
+      continue;
+    }
+    if (c == '#') {
+      at = std::min(text.find('\n', at), text.size());
+      continue;
+    }
+    depth += c == '[' || c == '{' ? 1 : c == ']' || c == '}' ? -1 : 0;
+    dots = c == '.' ? dots + 1 : c == '=' || c == ',' || c == '\n' || c == '[' || c == '{' ? 0 : dots;
+    line += c == '\n' ? 1 : 0;
+    if (depth > deepest_nesting || dots > longest_dotted_key) {
+      throw InputError(fmt::format("{}:{}: {} deeper than {} levels; this is no scene", file, line,
+                                   depth > deepest_nesting ? "brackets nested" : "a dotted key", deepest_nesting));
+    }
+    ++at;
+  }
 }
 
 TomlNode converted(const toml::node& node, const std::string& file) {
@@ -66,7 +145,10 @@ TomlNode converted(const toml::node& node, const std::string& file) {
 }
 
 /// The value of an override: TOML if it is TOML, else text.
-TomlNode override_value(const std::string& text) {
+TomlNode override_value(const std::string& text, const std::string& place) {
+  if (text.starts_with('[') || text.starts_with('{')) {
+    check_depth(text, place);
+  }
   try {
     return parse_toml("value = " + text + "\n", "").members.front().second;
   } catch (const InputError&) {
@@ -138,6 +220,7 @@ TomlNode* TomlNode::find(const std::string& name) {
 }
 
 TomlNode parse_toml(const std::string& text, const std::string& file) {
+  check_depth(text, file);
   try {
     const toml::table table = toml::parse(text, file);
     return converted(table, file);
@@ -167,14 +250,17 @@ std::string read_text_file(const std::filesystem::path& path, std::uintmax_t lar
 }
 
 void apply_override(TomlNode& root, const std::string& assignment) {
-  const std::string place = "--set " + assignment;
+  const std::string place = "--set " + on_one_line(assignment);
   const std::size_t equals = assignment.find('=');
   std::vector<std::string> path = split_path(assignment.substr(0, std::min(equals, assignment.size())));
   const bool empty_part = std::find(path.begin(), path.end(), std::string()) != path.end();
   if (equals == std::string::npos || equals + 1 == assignment.size() || path.empty() || empty_part) {
     throw InputError(place + ": must look like section.key=value or stage.0.key=value");
   }
-  TomlNode value = override_value(assignment.substr(equals + 1));
+  if (path.size() > longest_dotted_key) {
+    throw InputError(fmt::format("{}: the key has {} parts; {} at most", place, path.size(), longest_dotted_key));
+  }
+  TomlNode value = override_value(assignment.substr(equals + 1), place);
   set_place(value, place);
 
   TomlNode* node = &root;
