@@ -59,6 +59,7 @@ void TableObserver::observe(const Simulation& simulation, const StageProgress& p
   const Totals& totals = simulation.totals();
   const Box& box = simulation.box();
   const auto [lower, upper] = simulation.end_forces();
+  const bool has_ends = simulation.end_gap() != 0.0;
   const auto known = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
   const std::array<std::optional<double>, 20> values = {
       simulation.time(),
@@ -78,8 +79,8 @@ void TableObserver::observe(const Simulation& simulation, const StageProgress& p
       box.xy(),
       box.xz(),
       box.yz(),
-      simulation.end_gap(),
-      0.5 * (lower + upper),
+      has_ends ? std::optional(simulation.end_gap()) : std::nullopt,
+      has_ends ? std::optional(0.5 * (lower + upper)) : std::nullopt,
       steps_per_second(simulation.step())};
   writer_->write(simulation.step(), values);
 }

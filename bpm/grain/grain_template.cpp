@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace boba {
 
@@ -14,6 +15,11 @@ bool is_at_rest(const GrainTemplate& grain) {
     }
     return std::abs(d.norm() - bond.r0) <= 1e-6 * bond.r0;
   });
+}
+
+double nominal_volume(int n_nodes) {
+  constexpr double bulk_density = 1.226; // nodes per d^3
+  return n_nodes == 1 ? std::numbers::pi / 6.0 : n_nodes / bulk_density;
 }
 
 std::vector<double> reference_node_volumes(int n_nodes, const std::vector<Bond>& bonds) {

@@ -32,6 +32,10 @@ struct GrainTemplate {
 /// True when the arrangement is the undeformed one: every bond has its rest length, to a millionth.
 bool is_at_rest(const GrainTemplate& grain);
 
+/// Volume that a free grain of so many nodes stands for, d^3: a sphere of diameter d for one node, else n over the
+/// bulk's density of nodes. Source: docs/notation.md, "Grain".
+double nominal_volume(int n_nodes);
+
 /// V0_i = sum of r0^3 over the bonds of node i (d^3), for every node.
 /// Source: Clemmer, Hackney & Grest, bond force (unnumbered equation), "V_i ~ sum r^3".
 std::vector<double> reference_node_volumes(int n_nodes, const std::vector<Bond>& bonds);

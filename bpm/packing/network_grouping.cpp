@@ -16,9 +16,6 @@ namespace boba {
 
 namespace {
 
-/// Nodes per d^3 of the bulk that grains are cut from. Source: docs/notation.md, "Grain".
-constexpr double bulk_density = 1.226;
-
 /// One grain of the file: its rows in order of id, and its bonds between places in `rows`, sorted.
 struct FileGrain {
   std::int64_t molecule = 0;
@@ -189,7 +186,7 @@ GrainTemplate template_without_positions(const FileGrain& grain, const std::vect
   }
   std::sort(result.bonds.begin(), result.bonds.end(), before);
   result.position.assign(n_nodes, Vector3::Zero());
-  result.reference_volume = n_nodes / bulk_density;
+  result.reference_volume = nominal_volume(n_nodes);
   return result;
 }
 

@@ -75,7 +75,7 @@ def compaction(run, spec):
             rows.append({"P": f"{pressure[k]:.4g}", "phi": f"{measured['phi'][k]:.5f}",
                          "phi_error": f"{measured['phi_error'][k]:.5f}",
                          "phi_nodes": f"{measured['phi_nodes'][k]:.5f}",
-                         "phi_reference": f"{measured['phi_reference'][k]:.5f}",
+                         "phi_reference": f"{measured['phi_undeformed_hulls'][k]:.5f}",
                          "ordered": f"{1 - not_ordered(order)[k]:.3f}"})
     return rows
 

@@ -66,6 +66,9 @@ MeasureTables::MeasureTables(std::filesystem::path folder, const Topology& topol
   for (const auto& hull : undeformed_hulls_) {
     undeformed_.push_back(hull ? std::optional(grain_shape(*hull, plan_.facets)) : std::nullopt);
   }
+  for (int g = 0; g < topology_.n_grains(); ++g) {
+    nominal_volume_ += nominal_volume(static_cast<int>(topology_.first_node[g + 1] - topology_.first_node[g]));
+  }
   std::filesystem::create_directories(folder_);
   open(mode, last_step);
 }
@@ -92,9 +95,9 @@ std::vector<MeasureTable> MeasureTables::tables_of(const MeasurePlan& plan) {
          "kinetic_xx_k/d", "kinetic_yy_k/d", "kinetic_zz_k/d", "kinetic_xy_k/d", "kinetic_xz_k/d", "kinetic_yz_k/d",
          "with_damping", "P_run_k/d", "mu_run"});
   table(stress, "grain_stress", {"grain", "xx_kd2", "yy_kd2", "zz_kd2", "xy_kd2", "xz_kd2", "yz_kd2"});
-  table(
-      packing_fraction, "packing_fraction",
-      {"phi", "phi_error", "phi_nodes", "phi_nodes_error", "phi_hulls", "phi_hulls_error", "points", "phi_reference"});
+  table(packing_fraction, "packing_fraction",
+        {"phi", "phi_error", "phi_nodes", "phi_nodes_error", "phi_hulls", "phi_hulls_error", "points", "phi_reference",
+         "phi_undeformed_hulls"});
   table(shape, "grains",
         {"grain", "species", "volume_d3", "area_d2", "asphericity", "moment_1_d2", "moment_2_d2", "moment_3_d2",
          "facets", "faceted_share", "facets_transitive", "faceted_share_transitive"});
@@ -237,7 +240,7 @@ void MeasureTables::add_packing_fraction(const Frame& frame) {
   const auto volume = undeformed_mean(undeformed_, [](const GrainShape& s) { return s.shape.volume; });
   write("packing_fraction", frame.snapshot,
         {phi.both.value, phi.both.standard_error, phi.nodes.value, phi.nodes.standard_error, phi.hulls.value,
-         phi.hulls.standard_error, static_cast<double>(phi.n_points),
+         phi.hulls.standard_error, static_cast<double>(phi.n_points), nominal_volume_ / frame.snapshot.box.volume(),
          volume ? std::optional(*volume * topology_.n_grains() / frame.snapshot.box.volume()) : std::nullopt});
   note("phi", frame.snapshot, phi.both.value);
 }

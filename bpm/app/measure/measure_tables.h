@@ -115,6 +115,7 @@ private:
   std::map<std::string, TableWriter> tables_;
   std::map<std::string, Series> series_;
 
+  double nominal_volume_ = 0.0;                                      ///< of all grains, d^3
   std::vector<std::optional<measure::ConvexHull>> undeformed_hulls_; ///< by template index
   std::vector<std::optional<GrainShape>> undeformed_;                ///< by template index
 
