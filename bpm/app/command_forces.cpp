@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <stdexcept>
 
 namespace boba {
 
@@ -14,7 +15,7 @@ namespace {
 
 struct ForcesArguments {
   std::filesystem::path reference, state, output;
-  std::optional<std::int64_t> timestep;
+  std::optional<std::int64_t> timestep, frame;
   double alpha = 0.0;
   Material material;
   int threads = 1;
@@ -54,13 +55,29 @@ void print_pressure(const Totals& totals) {
   fmt::print("{}\n", line);
 }
 
+/// \throws std::runtime_error: numbers that are none do not leave the program as results.
+void check_forces(const Topology& topology, const Snapshot& snapshot) {
+  for (std::size_t node = 0; node < snapshot.force.size(); ++node) {
+    if (!snapshot.force[node].allFinite()) {
+      throw std::runtime_error(
+          fmt::format("the force on node {} is not a finite number: two nodes lie at the same place, "
+                      "or lengths or coefficients are beyond what numbers can hold",
+                      topology.id[node]));
+    }
+  }
+}
+
 ExitCode compute(const ForcesArguments& a) {
   check_arguments(a);
-  LammpsSource source{a.reference, std::nullopt, a.timestep};
+  LammpsSource source{a.reference, std::nullopt, a.timestep, a.frame};
   if (!a.state.empty()) {
     source.state = a.state;
   }
-  Packing packing = read_lammps_packing(source).packing;
+  LammpsPacking read = read_lammps_packing(source);
+  if (!read.warning.empty()) {
+    fmt::print(stderr, "boba: warning: {}\n", read.warning);
+  }
+  Packing packing = std::move(read.packing);
   for (Grain& grain : packing.grains) {
     grain.alpha = a.alpha;
   }
@@ -69,9 +86,11 @@ ExitCode compute(const ForcesArguments& a) {
   options.threads = a.threads;
   Simulation simulation(std::move(packing), a.material, options);
   simulation.evaluate();
+  const Snapshot found = simulation.snapshot({.velocity = true, .force = true});
+  check_forces(topology, found);
   if (!a.output.empty()) {
     LammpsDumpWriter writer(a.output, DumpLayout::forces, a.force ? FileMode::overwrite : FileMode::create);
-    writer.write(topology, simulation.snapshot({.velocity = true, .force = true}));
+    writer.write(topology, found);
     writer.close();
   }
   print_pressure(simulation.totals());
@@ -86,7 +105,10 @@ CommandBody add_forces_command(CLI::App& app) {
       ->required();
   app.add_option("--state", a->state,
                  "LAMMPS dump or data file with cell, positions, velocities (default: the reference)");
-  app.add_option("--timestep", a->timestep, "frame of the dump (default: its last)");
+  CLI::Option* timestep =
+      app.add_option("--timestep", a->timestep, "time step of the dump's frame (default: its last)");
+  app.add_option("--frame", a->frame, "number of the dump's frame, from 0, or from the end when negative")
+      ->excludes(timestep);
   app.add_option("--alpha", a->alpha, "many-body coefficient, k d")->required();
   app.add_option("--k", a->material.k, "stiffness")->capture_default_str();
   app.add_option("--gamma", a->material.gamma, "damping, sqrt(k m)")->capture_default_str();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/lammps_data.h"
 
+#include "bpm/grain/sound_template.h"
 #include "bpm/io/id_table.h"
 #include "bpm/io/line_reader.h"
 #include "bpm/io/usable_cell.h"
@@ -8,8 +9,10 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string>
 
@@ -17,22 +20,29 @@ namespace boba {
 
 namespace {
 
-/// Columns of a row of `Atoms`; -1 where the style has none.
+/// Columns of a row of `Atoms`; -1 where the style has none. A density follows the diameter.
 struct AtomStyle {
   std::string_view name;
   int molecule;
   int type;
+  int diameter;
   int x;
 };
 
-constexpr std::array<AtomStyle, 8> atom_styles = {{{"bond", 1, 2, 3},
-                                                   {"angle", 1, 2, 3},
-                                                   {"molecular", 1, 2, 3},
-                                                   {"full", 1, 2, 4},
-                                                   {"atomic", -1, 1, 2},
-                                                   {"charge", -1, 1, 3},
-                                                   {"sphere", -1, 1, 4},
-                                                   {"bpm/sphere", 1, 2, 5}}};
+constexpr std::array<AtomStyle, 8> atom_styles = {{{"bond", 1, 2, -1, 3},
+                                                   {"angle", 1, 2, -1, 3},
+                                                   {"molecular", 1, 2, -1, 3},
+                                                   {"full", 1, 2, -1, 4},
+                                                   {"atomic", -1, 1, -1, 2},
+                                                   {"charge", -1, 1, -1, 3},
+                                                   {"sphere", -1, 1, 2, 4},
+                                                   {"bpm/sphere", 1, 2, 3, 5}}};
+
+bool is_whole(std::string_view field) {
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  return error == std::errc() && end == field.data() + field.size();
+}
 
 const AtomStyle& style_named(std::string_view name) {
   return *std::find_if(atom_styles.begin(), atom_styles.end(), [&](const AtomStyle& s) { return s.name == name; });
@@ -74,6 +84,7 @@ private:
   AtomStyle choose_style(std::string_view comment) const;
   AtomStyle style_by_columns() const;
   void read_atom(const AtomStyle& style);
+  void check_sphere(const AtomStyle& style) const;
   void read_velocities();
   void read_bonds();
   void read_masses();
@@ -191,7 +202,7 @@ Box DataReader::make_box() const {
     origin[axis] = (*header_.limits[axis])[0];
     lengths[axis] = (*header_.limits[axis])[1] - (*header_.limits[axis])[0];
   }
-  if (!is_usable_cell(lengths, header_.tilts)) {
+  if (!is_usable_cell(lengths, header_.tilts) || !is_usable_position(origin) || !is_usable_position(lengths)) {
     in_.fail_file(fmt::format("a cell of lengths {} {} {} and tilts {} {} {} cannot be computed with", lengths[0],
                               lengths[1], lengths[2], header_.tilts[0], header_.tilts[1], header_.tilts[2]));
   }
@@ -232,6 +243,9 @@ void DataReader::read_rows(std::int64_t n_rows, std::string_view section, ReadRo
     if (on_section_name()) {
       in_.fail(fmt::format("section '{}' ends after {} of the {} rows that the header gives", section, row, n_rows));
     }
+    if (!in_.has_line_end()) {
+      in_.fail_cut_off("the last line has no line end: the file was cut off, and the last number may lack digits");
+    }
     read_row();
   }
 }
@@ -271,7 +285,11 @@ AtomStyle DataReader::choose_style(std::string_view comment) const {
   std::string allowed;
   for (const AtomStyle& style : atom_styles) {
     if (style.name == name) {
-      need_columns(style.x + 3, fmt::format("atom style '{}'", name));
+      const auto n = static_cast<int>(in_.fields().size());
+      if (n != style.x + 3 && n != style.x + 6) {
+        in_.fail(fmt::format("{} columns; atom style '{}' has {}, or {} with image flags", n, name, style.x + 3,
+                             style.x + 6));
+      }
       return style;
     }
     allowed += fmt::format("{}{}", allowed.empty() ? "" : ", ", style.name);
@@ -280,9 +298,15 @@ AtomStyle DataReader::choose_style(std::string_view comment) const {
 }
 
 AtomStyle DataReader::style_by_columns() const {
-  switch (in_.fields().size()) {
+  const std::vector<std::string_view>& fields = in_.fields();
+  switch (fields.size()) {
   case 5:
+    return style_named("atomic");
   case 8:
+    if (is_whole(fields[2])) {
+      in_.fail(
+          "8 columns can be atom style 'bpm/sphere' or 'atomic' with image flags; name the style behind 'Atoms #'");
+    }
     return style_named("atomic");
   case 6:
   case 9:
@@ -318,6 +342,9 @@ void DataReader::read_atom(const AtomStyle& style) {
   data_.id.push_back(in_.integer(0, "atom id", 1));
   data_.molecule.push_back(style.molecule < 0 ? 0 : in_.integer(style.molecule, "molecule", 0));
   data_.type.push_back(type_at(style.type, "atom type", atom_labels_, header_.n_atom_types));
+  if (style.diameter >= 0) {
+    check_sphere(style);
+  }
   Vector3 x(in_.real(style.x, "x"), in_.real(style.x + 1, "y"), in_.real(style.x + 2, "z"));
   if (data_.has_images) {
     Vector3 images;
@@ -326,10 +353,24 @@ void DataReader::read_atom(const AtomStyle& style) {
     }
     x += data_.box.h() * images;
   }
-  if (!x.allFinite()) {
-    in_.fail("the position is beyond what numbers can hold");
+  if (!is_usable_position(x)) {
+    in_.fail(fmt::format("the position is {:g} {:g} {:g}; allowed: {:g} to {:g}", x[0], x[1], x[2], -largest_coordinate,
+                         largest_coordinate));
   }
   data_.position.push_back(x);
+}
+
+/// Every node has the diameter 1 and the mass 1; other values would be ignored in silence.
+void DataReader::check_sphere(const AtomStyle& style) const {
+  const double diameter = in_.real(style.diameter, "diameter"), density = in_.real(style.diameter + 1, "density");
+  if (diameter != 1.0) {
+    in_.fail(fmt::format("diameter is {}; every node's diameter must be 1", diameter));
+  }
+  const double mass = density * std::numbers::pi / 6.0;
+  if (!(std::abs(mass - 1.0) <= 1e-2)) {
+    in_.fail(fmt::format("density is {}, which makes the node's mass {:.4g}; it must be 1 (density 6 / pi = 1.9099)",
+                         density, mass));
+  }
 }
 
 void DataReader::read_velocities() {
@@ -338,6 +379,10 @@ void DataReader::read_velocities() {
   }
   read_rows(*header_.n_atoms, "Velocities", [&] {
     need_columns(4, "a row of 'Velocities' (id vx vy vz)");
+    if (in_.fields().size() != 4 && in_.fields().size() != 7) {
+      in_.fail(fmt::format("{} columns; a row of 'Velocities' has 4 (id vx vy vz), or 7 with angular velocities",
+                           in_.fields().size()));
+    }
     velocities_.emplace_back(in_.integer(0, "atom id", 1),
                              Vector3(in_.real(1, "vx"), in_.real(2, "vy"), in_.real(3, "vz")));
   });
@@ -349,6 +394,9 @@ void DataReader::read_bonds() {
   }
   read_rows(header_.n_bonds, "Bonds", [&] {
     need_columns(4, "a row of 'Bonds' (number type i j)");
+    if (in_.fields().size() > 4) {
+      in_.fail(fmt::format("{} columns; a row of 'Bonds' (number type i j) has 4", in_.fields().size()));
+    }
     in_.integer(0, "bond number");
     LammpsData::Bond bond;
     bond.type = type_at(1, "bond type", bond_labels_, header_.n_bond_types);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace boba {
@@ -24,6 +25,7 @@ struct LammpsFrame {
   std::vector<Vector3> position;      ///< d
   std::vector<Vector3> velocity;      ///< d/tau; empty without vx vy vz
   std::vector<Vector3> force;         ///< k d; empty without fx fy fz
+  std::string cut_off;                ///< why what follows the whole frames of the file is none; empty: nothing does
 
   std::int64_t n_nodes() const { return static_cast<std::int64_t>(id.size()); }
 };
@@ -32,11 +34,16 @@ struct LammpsFrame {
 ///
 /// Columns may come in any order and others are skipped; positions are x y z, scaled xs ys zs, or unwrapped xu yu zu,
 /// xsu ysu zsu, and are unwrapped with ix iy iz when these are there. The bounding limits of a tilted cell are turned
-/// into the cell. \throws InputError with file, line, value and what is allowed; also when a frame is cut off. Source:
-/// LAMMPS documentation, "dump command" and "Howto triclinic".
+/// into the cell. Of a file that was cut off the whole frames count, and LammpsFrame::cut_off says so. Columns `mass`,
+/// `diameter` and `radius` must be those of the model. \throws InputError with file, line, value and what is allowed;
+/// also when no frame is whole, or two are of that time step. Source: LAMMPS documentation, "dump command" and "Howto
+/// triclinic".
 LammpsFrame read_lammps_dump(const std::filesystem::path& path, std::optional<std::int64_t> timestep = std::nullopt);
 
-/// Time steps of all frames of a dump, in the file's order. \throws InputError as read_lammps_dump.
+/// The same for a frame by its place in the file: 0, 1, ... or, from the end, -1 (the last), -2, ...
+LammpsFrame read_lammps_dump_frame(const std::filesystem::path& path, std::int64_t number);
+
+/// Time steps of all whole frames of a dump, in the file's order. \throws InputError as read_lammps_dump.
 std::vector<std::int64_t> lammps_dump_timesteps(const std::filesystem::path& path);
 
 /// Row of the frame for each of the wanted ids, so that x[i] = frame.position[rows[i]].
@@ -52,9 +59,9 @@ enum class DumpLayout {
 
 /// Writes frames of a LAMMPS text dump with wrapped positions; `mol` is the grain, `type` the species + 1.
 ///
-/// A tilted cell is written with its bounding limits, as the format wants them. A name that ends in .gz is compressed.
-/// \throws std::runtime_error when the file cannot be written.
-/// Source: LAMMPS documentation, "dump command" and "Howto triclinic".
+/// A cell with a periodic direction is written as a tilted one, with its bounding limits, whether it leans or not. A
+/// name that ends in .gz is compressed. \throws std::runtime_error when the file cannot be written. Source: LAMMPS
+/// documentation, "dump command" and "Howto triclinic".
 class LammpsDumpWriter {
 public:
   LammpsDumpWriter(const std::filesystem::path& path, DumpLayout layout, FileMode mode = FileMode::create);

@@ -4,6 +4,8 @@
 #include "bpm/io/lammps_data.h"
 #include "bpm/io/lammps_dump.h"
 #include "bpm/io/line_reader.h"
+#include "bpm/io/naming.h"
+#include "bpm/packing/sound_packing.h"
 #include "bpm/packing/whole_grains.h"
 
 #include <fmt/format.h>
@@ -37,24 +39,18 @@ LammpsFrame frame_of(LammpsData data) {
   return frame;
 }
 
-LammpsFrame read_state(const std::filesystem::path& path, std::optional<std::int64_t> timestep) {
+LammpsFrame read_state(const LammpsSource& source) {
+  const std::filesystem::path& path = *source.state;
   if (is_dump(path)) {
-    return read_lammps_dump(path, timestep);
+    return source.frame ? read_lammps_dump_frame(path, *source.frame) : read_lammps_dump(path, source.timestep);
+  }
+  if (source.frame.value_or(-1) != -1 && *source.frame != 0) {
+    throw InputError(
+        fmt::format("{}: frame = {}: a data file has one; allowed: 0 and -1", path.string(), *source.frame));
   }
   LammpsData data = read_lammps_data(path);
   check_masses(data, path);
   return frame_of(std::move(data));
-}
-
-/// Runs a step of the making and puts the file's name in front of what it refuses.
-template <typename Call> auto naming(const std::filesystem::path& path, Call call) {
-  try {
-    return call();
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", path.string(), error.what()));
-  }
 }
 
 } // namespace
@@ -67,8 +63,11 @@ LammpsPacking read_lammps_packing(const LammpsSource& source) {
         {reference.box, reference.id, reference.molecule, reference.type, reference.position, reference.bond_rows()});
   });
   const std::filesystem::path path = source.state.value_or(source.reference);
-  const LammpsFrame state = source.state ? read_state(path, source.timestep) : frame_of(std::move(reference));
-  LammpsPacking result{std::move(grouped.packing), std::move(grouped.row), state.timestep};
+  const LammpsFrame state = source.state ? read_state(source) : frame_of(std::move(reference));
+  LammpsPacking result{std::move(grouped.packing), std::move(grouped.row), state.timestep, {}};
+  if (!state.cut_off.empty()) {
+    result.warning = fmt::format("{}; taken is the frame of step {}, which is whole", state.cut_off, state.timestep);
+  }
   Packing& packing = result.packing;
   const std::vector<std::int64_t> rows = rows_of_ids(state, packing.id, path);
   for (std::size_t node = 0; node < rows.size(); ++node) {
@@ -77,6 +76,7 @@ LammpsPacking read_lammps_packing(const LammpsSource& source) {
   }
   packing.box = state.box;
   packing.position = naming(path, [&] { return whole_positions(packing, packing.box, packing.position); });
+  naming(path, [&] { check_sound(packing); });
   return result;
 }
 

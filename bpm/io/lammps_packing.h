@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace boba {
 
@@ -13,7 +14,8 @@ namespace boba {
 struct LammpsSource {
   std::filesystem::path reference;            ///< data file of the undeformed grains: bonds and r0
   std::optional<std::filesystem::path> state; ///< dump or data file of the present state; absent: the reference
-  std::optional<std::int64_t> timestep;       ///< frame of a dump; absent: the last
+  std::optional<std::int64_t> timestep = {};  ///< frame of a dump; absent: the last
+  std::optional<std::int64_t> frame = {};     ///< the same by number, from 0, or from the end when negative
 };
 
 /// A packing read from LAMMPS files: r0, bonds and grains from the reference, box, positions and velocities from the
@@ -22,6 +24,7 @@ struct LammpsPacking {
   Packing packing;               ///< alpha = 0; grains whole; templates hold the reference arrangement
   std::vector<std::int64_t> row; ///< per node of the packing: its row in the reference file
   std::int64_t timestep = 0;     ///< of the state
+  std::string warning;           ///< what deserves a word: the state's file was cut off
 };
 
 /// Reads both files and joins them by atom id; see group_network() for what becomes a grain and what a template.

@@ -65,6 +65,10 @@ bool LineReader::fill() {
   buffer_.resize(kept + static_cast<std::size_t>(got > 0 ? got : 0));
   int code = Z_OK;
   const char* message = gzerror(file_.get(), &code);
+  if (code == Z_BUF_ERROR) { // what was read before the end is handed out first
+    at_end_ = is_cut_off_ = true;
+    return got > 0;
+  }
   if (got < 0 || (code != Z_OK && code != Z_STREAM_END)) {
     fail(fmt::format("damaged or truncated compressed data ({})", code == Z_ERRNO ? std::strerror(errno) : message));
   }
@@ -86,6 +90,9 @@ bool LineReader::next() {
     end = buffer_.find('\n', begin_ + searched);
   }
   if (end == std::string::npos) {
+    if (is_cut_off_) {
+      fail_cut_off("the compressed data end too early: the file was cut off");
+    }
     if (begin_ == buffer_.size()) {
       return false;
     }
@@ -169,6 +176,10 @@ std::int64_t LineReader::count(std::string_view name, std::size_t bytes_each) co
 
 void LineReader::fail(std::string_view message) const {
   throw InputError(fmt::format("{}:{}: {}", path_.string(), line_number_, message));
+}
+
+void LineReader::fail_cut_off(std::string_view message) const {
+  throw CutOff(fmt::format("{}:{}: {}", path_.string(), line_number_, message));
 }
 
 void LineReader::fail_file(std::string_view message) const {

@@ -14,6 +14,12 @@ struct gzFile_s;
 
 namespace boba {
 
+/// A file ends where more should follow: it was cut off, or is still being written.
+class CutOff : public InputError {
+public:
+  using InputError::InputError;
+};
+
 /// Reads a text file, plain or gzipped, line by line and turns its fields into numbers.
 ///
 /// Every failure is an InputError that names the file, the line and the offending value, so a caller only says what it
@@ -46,6 +52,7 @@ public:
   std::int64_t count(std::string_view name, std::size_t bytes_each) const;
 
   [[noreturn]] void fail(std::string_view message) const;
+  [[noreturn]] void fail_cut_off(std::string_view message) const; ///< \throws CutOff
   /// Fails without a line number, for what is missing from the whole file.
   [[noreturn]] void fail_file(std::string_view message) const;
 
@@ -61,6 +68,7 @@ private:
   std::string buffer_;
   std::size_t begin_ = 0; ///< of what is not yet handed out in buffer_
   bool at_end_ = false;
+  bool is_cut_off_ = false;    ///< compressed data end too early
   std::size_t chunk_size_ = 0; ///< bytes asked for at a time
   std::string line_;
   std::vector<std::string_view> fields_;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/stages/lammps_start.h"
 
-#include "bpm/io/input_error.h"
-#include "bpm/io/lammps_dump.h"
 #include "bpm/io/lammps_packing.h"
 #include "bpm/scene/schema.h"
 
-#include <fmt/format.h>
+#include <utility>
 
 namespace boba {
 
@@ -28,24 +26,13 @@ LammpsStart::LammpsStart(const SceneTable& table, const StartFiles& files)
   }
 }
 
-/// Time step of the frame that a scene counts from 0, or from the end; none for the last.
-std::optional<std::int64_t> LammpsStart::timestep() const {
-  if (frame_ == -1 || !state_) {
-    return std::nullopt;
-  }
-  const std::vector<std::int64_t> steps = lammps_dump_timesteps(*state_);
-  const auto n = static_cast<std::int64_t>(steps.size());
-  const std::int64_t number = frame_ < 0 ? n + frame_ : frame_;
-  if (number < 0 || number >= n) {
-    throw InputError(fmt::format("{}: start.frame = {}: the file has {} frames; allowed: {} to {}", state_->string(),
-                                 frame_, n, -n, n - 1));
-  }
-  return steps[static_cast<std::size_t>(number)];
-}
-
 Packing LammpsStart::make(const StartContext& context) const {
   context.narrate("reading " + reference_.string());
-  Packing packing = read_lammps_packing({reference_, state_, timestep()}).packing;
+  LammpsPacking read = read_lammps_packing({reference_, state_, std::nullopt, frame_});
+  if (!read.warning.empty()) {
+    context.narrate("warning: " + read.warning);
+  }
+  Packing packing = std::move(read.packing);
   const double alpha = context.alpha(material_);
   for (Grain& grain : packing.grains) {
     grain.alpha = alpha;

@@ -19,8 +19,6 @@ public:
   }
 
 private:
-  std::optional<std::int64_t> timestep() const;
-
   std::filesystem::path reference_;
   std::optional<std::filesystem::path> state_;
   int frame_;

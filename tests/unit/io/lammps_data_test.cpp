@@ -134,9 +134,29 @@ TEST(LammpsData, TellsStylesByCommentAndByColumns) {
     EXPECT_TRUE(data.bonds.empty());
     EXPECT_TRUE(data.velocity.empty());
   }
-  const LammpsData atomic = read("Atoms", "3 2 1 2 3 0 0 1");
+  const LammpsData atomic = read("Atoms", "3 2 1.0 2 3 0 0 1");
   EXPECT_EQ(atomic.molecule[0], 0);
   EXPECT_EQ(atomic.position[0], Vector3(1, 2, 7));
+}
+
+TEST(LammpsData, RefusesRowsThatMeanSomethingElse) {
+  const TemporaryFolder folder;
+  const auto said = [&](const std::string& heading, const std::string& row) {
+    const auto path =
+        folder.file("a.data", "title\n1 atoms\n0 4 xlo xhi\n0 4 ylo yhi\n0 4 zlo zhi\n\n" + heading + "\n\n" + row);
+    return test::message_of<InputError>([&] { read_lammps_data(path); });
+  };
+  const auto expect = [&](const std::string& heading, const std::string& row, const std::string& part) {
+    EXPECT_NE(said(heading, row).find(part), std::string::npos) << said(heading, row);
+  };
+  expect("Atoms # bpm/sphere", "1 1 1 2.0 1.909859 1 1 1\n", "diameter is 2; every node's diameter must be 1");
+  expect("Atoms # bpm/sphere", "1 1 1 1.0 1.0 1 1 1\n", "node's mass 0.5236; it must be 1");
+  expect("Atoms # sphere", "1 1 2.0 1.909859 1 1 1\n", "diameter is 2");
+  expect("Atoms # sphere", "1 1 1 1.0 1.0 1 1 1\n", "8 columns; atom style 'sphere' has 7, or 10");
+  expect("Atoms # bond", "1 1 1 1 1 1 0\n", "7 columns; atom style 'bond' has 6, or 9");
+  expect("Atoms", "1 1 1 2.0 1.0 1 1 1\n", "8 columns can be");
+  expect("Atoms # bond", "1 1 1 1 1e300 1\n", "the position is 1 1e+300 1");
+  expect("Atoms # bond", "1 1 1 1 1 1.25", "the last line has no line end");
 }
 
 TEST(LammpsData, ReadsTypeLabels) {

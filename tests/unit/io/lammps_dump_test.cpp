@@ -55,6 +55,44 @@ TEST(LammpsDump, TakesTheLastFrameOrTheOneAskedFor) {
   EXPECT_NE(message.find("no frame of step 150"), std::string::npos) << message;
 }
 
+TEST(LammpsDump, TakesAFrameByItsPlaceInTheFile) {
+  const TemporaryFolder folder;
+  // LAMMPS's reset_timestep: the third frame is of step 100 once more.
+  std::string third = first_frame;
+  third.replace(third.find("1 1.0 8"), 7, "1 7.0 8");
+  const auto path = folder.file("a.dump", first_frame + second_frame + third);
+  EXPECT_EQ(read_lammps_dump_frame(path, 0).position[0], Vector3(1, 2, 23));
+  EXPECT_EQ(read_lammps_dump_frame(path, 1).timestep, 200);
+  EXPECT_EQ(read_lammps_dump_frame(path, 2).position[0], Vector3(7, 2, 23));
+  EXPECT_EQ(read_lammps_dump_frame(path, -1).position[0], Vector3(7, 2, 23));
+  EXPECT_EQ(read_lammps_dump_frame(path, -3).position[0], Vector3(1, 2, 23));
+  const auto said = [&](std::int64_t frame) {
+    return test::message_of<InputError>([&] { read_lammps_dump_frame(path, frame); });
+  };
+  EXPECT_NE(said(3).find("has 3 frames; allowed: -3 to 2"), std::string::npos) << said(3);
+  EXPECT_NE(said(-4).find("allowed: -3 to 2"), std::string::npos) << said(-4);
+  const std::string twice = test::message_of<InputError>([&] { read_lammps_dump(path, 100); });
+  EXPECT_NE(twice.find("frames 0 and 2 are both of step 100"), std::string::npos) << twice;
+}
+
+TEST(LammpsDump, ACutOffFileGivesItsWholeFrames) {
+  const TemporaryFolder folder;
+  const std::string whole = first_frame + second_frame;
+  // Wherever the second frame is cut, inside its last number too.
+  for (std::size_t length = first_frame.size() + 1; length < whole.size(); ++length) {
+    const auto path = folder.file("cut.dump", whole.substr(0, length));
+    const LammpsFrame frame = read_lammps_dump(path);
+    EXPECT_EQ(frame.timestep, 100) << length;
+    EXPECT_FALSE(frame.cut_off.empty()) << length;
+    EXPECT_EQ(read_lammps_dump_frame(path, 0).timestep, 100) << length;
+    EXPECT_THROW(read_lammps_dump_frame(path, 1), InputError) << length;
+  }
+  EXPECT_TRUE(read_lammps_dump(folder.file("whole.dump", whole)).cut_off.empty());
+  for (std::size_t length = 0; length < first_frame.size(); ++length) {
+    EXPECT_THROW(read_lammps_dump(folder.file("none.dump", whole.substr(0, length))), InputError) << length;
+  }
+}
+
 TEST(LammpsDump, PrefersUnwrappedColumns) {
   const TemporaryFolder folder;
   const LammpsFrame frame = read_lammps_dump(
@@ -108,17 +146,25 @@ TEST_P(LammpsDumpRefusal, NamesFileAndFault) {
 
 INSTANTIATE_TEST_SUITE_P(
     , LammpsDumpRefusal,
-    testing::Values(Refusal{"NoId", " id ", " ID ", "no column 'id'"},
-                    Refusal{"NoX", " x ", " q ", "no columns 'x y z'"},
-                    Refusal{"Nan", "1 1.0 8", "1 NaN 8", ":10: position is 'NaN'"},
-                    Refusal{"TornRow", " 6.0 0.4 0.5 0.6\n", " 6.0", "ends after 1 of 2 rows"},
-                    Refusal{"TornFrame", "2 4.0 3 0 5.0 0 nan -1 6.0 0.4 0.5 0.6\n", "", "ends after 1 of 2 rows"},
-                    Refusal{"Huge", "ATOMS\n2\n", "ATOMS\n90000000000000\n", "GB"},
-                    Refusal{"NotADump", "ITEM: TIMESTEP", "TIMESTEP", "'ITEM:'"},
-                    Refusal{"SameIdTwice", "1 1.0 8", "1 1.0 3", "atom id 3 stands twice"},
-                    Refusal{"InvertedBox", "0 10\n", "10 0\n", "must be positive"},
-                    Refusal{"ShortLimits", "0 10\n", "10\n", "1 numbers"},
-                    Refusal{"NoBox", "ITEM: BOX BOUNDS pp ff pp\n0 10\n-5 5\n0 20\n", "", "before 'ITEM: BOX BOUNDS'"}),
+    testing::Values(
+        Refusal{"NoId", " id ", " ID ", "no column 'id'"}, Refusal{"NoX", " x ", " q ", "no columns 'x y z'"},
+        Refusal{"Nan", "1 1.0 8", "1 NaN 8", ":10: position is 'NaN'"},
+        Refusal{"TornRow", " 6.0 0.4 0.5 0.6\n", " 6.0", "ends after 1 of 2 rows"},
+        Refusal{"TornFrame", "2 4.0 3 0 5.0 0 nan -1 6.0 0.4 0.5 0.6\n", "", "ends after 1 of 2 rows"},
+        Refusal{"Huge", "ATOMS\n2\n", "ATOMS\n90000000000000\n", "GB"},
+        Refusal{"NotADump", "ITEM: TIMESTEP", "TIMESTEP", "'ITEM:'"},
+        Refusal{"SameIdTwice", "1 1.0 8", "1 1.0 3", "atom id 3 stands twice"},
+        Refusal{"InvertedBox", "0 10\n", "10 0\n", "must be positive"},
+        Refusal{"TiltUnderAnUprightHeader", "0 10\n", "0 10 0.5\n", "3 numbers; a limit of an upright cell"},
+        Refusal{"UprightUnderATiltedHeader", "BOUNDS pp", "BOUNDS xy xz yz pp", "2 numbers; a limit of a tilted"},
+        Refusal{"UnknownBoundary", "BOUNDS pp ff pp", "BOUNDS pp ff pq", "three boundaries"},
+        Refusal{"ExtraColumn", "0.1 0.2 0.3\n", "0.1 0.2 0.3 9\n", "13 columns"},
+        Refusal{"FarAway", "1 1.0 8", "1 1e300 8", "position is 1e+300"},
+        Refusal{"Fast", "0.1 0.2 0.3\n", "0.1 0.2 1e300\n", "velocity is 0.1 0.2 1e+300"},
+        Refusal{"OtherMass", "c_extra", "mass", "mass is 99"},
+        Refusal{"OtherDiameter", "c_extra", "diameter", "diameter is 99"},
+        Refusal{"ShortLimits", "0 10\n", "10\n", "1 numbers"},
+        Refusal{"NoBox", "ITEM: BOX BOUNDS pp ff pp\n0 10\n-5 5\n0 20\n", "", "before 'ITEM: BOX BOUNDS'"}),
     [](const auto& the_case) { return std::string(the_case.param.name); });
 
 Topology two_grains() {
@@ -158,6 +204,23 @@ TEST(LammpsDumpWriter, WritesBoundingLimitsAndGrains) {
   EXPECT_TRUE(frame.is_unwrapped);
   EXPECT_LT((frame.position[2] - Vector3(40, -50, 60)).norm(), 1e-8);
   EXPECT_TRUE(frame.box.h().isApprox(tilted_state(7).box.h(), 1e-15));
+}
+
+TEST(LammpsDumpWriter, HasOneFormOfHeaderForAPeriodicCell) {
+  const TemporaryFolder folder;
+  LammpsDumpWriter writer(folder / "a.dump", DumpLayout::viewer);
+  for (const double xy : {0.0, 0.3, 0.0}) {
+    Snapshot snapshot = tilted_state(static_cast<std::int64_t>(10.0 * xy));
+    snapshot.box = Box(Vector3::Zero(), Vector3(14, 13, 12), Vector3(xy, 0.0, 0.0));
+    writer.write(two_grains(), snapshot);
+  }
+  writer.close();
+  const std::string text = test::content_of(folder / "a.dump");
+  std::size_t n = 0;
+  for (std::size_t at = text.find("BOX BOUNDS"); at != std::string::npos; at = text.find("BOX BOUNDS", at + 1), ++n) {
+    EXPECT_EQ(text.substr(at, 28), "BOX BOUNDS xy xz yz pp pp pp");
+  }
+  EXPECT_EQ(n, 3u);
 }
 
 TEST(LammpsDumpWriter, BoundsTiltsOfEverySign) {
