@@ -5,6 +5,7 @@
 #include "bpm/dynamics/share_state.h"
 #include "bpm/dynamics/simulation.h"
 #include "bpm/io/input_error.h"
+#include "bpm/packing/sound_packing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,7 @@ std::vector<Vector3> vectors(const std::vector<double>& numbers) {
 void store_template(CheckpointData& data, const GrainTemplate& grain, const std::string& name) {
   data.real[name + "/position"] = flat(grain.position);
   data.real[name + "/volume"] = {grain.reference_volume};
+  data.integer[name + "/at_rest"] = {is_at_rest(grain) ? 1 : 0};
   std::vector<double>& r0 = data.real[name + "/r0"];
   std::vector<std::int64_t>& ends = data.integer[name + "/bonds"];
   for (const Bond& bond : grain.bonds) {
@@ -104,6 +106,11 @@ void store_packing(CheckpointData& data, const Packing& packing) {
   data.real[p + "position"] = flat(packing.position);
 }
 
+bool is_at_rest_there(const CheckpointData& data, std::size_t t) {
+  const auto found = data.integer.find(fmt::format("{}template{}/at_rest", packing_prefix, t));
+  return found != data.integer.end() && found->second.at(0) != 0;
+}
+
 Packing read_packing(const CheckpointData& data) {
   const std::string& p = packing_prefix;
   Packing packing;
@@ -135,6 +142,11 @@ Packing read_packing(const CheckpointData& data) {
   require(packing.position.size() == n && packing.id.size() == n && all_finite(data.real.at(p + "position")),
           "positions or ids do not belong to the grains");
   packing.velocity.assign(packing.position.size(), Vector3::Zero());
+  check_sound(packing);
+  for (std::size_t t = 0; t < packing.templates.size(); ++t) {
+    require(!is_at_rest_there(data, t) || is_at_rest(*packing.templates[t]),
+            fmt::format("rest lengths of template {} are not those of its undeformed nodes", t));
+  }
   return packing;
 }
 

@@ -10,6 +10,7 @@
 #include "bpm/app/stage_summary.h"
 #include "bpm/app/stop_request.h"
 #include "bpm/app/version.h"
+#include "bpm/io/naming.h"
 #include "bpm/packing/packing_numbers.h"
 
 #include <fmt/format.h>
@@ -64,7 +65,7 @@ public:
         progress_(setup_.modulus.value_or(0.0), numbers_.n_nodes, setup_.quiet, ranks),
         output_record_(setup_.folder, files_of_run(setup_.scene)) {
     if (setup_.restart) {
-      simulation_.restore(setup_.restart->state);
+      naming(setup_.restart->file, [&] { simulation_.restore(setup_.restart->state); });
       setup_.restart->state = {};
     }
     writers_ = open_writers(setup_, simulation_, numbers_);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/grain/template_cache.h"
 
+#include "bpm/grain/bond_network.h"
 #include "bpm/grain/build_template.h"
 #include "bpm/grain/template_file.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
 #include <pwd.h>
@@ -15,6 +18,49 @@
 namespace boba {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Is it a template that build_template could have made of `spec`? A checksum that fits says who wrote the file, not
+/// that its numbers belong together: bonds and rest lengths follow from the positions once more.
+bool belongs_to(const TemplateSpec& spec, const GrainTemplate& grain) {
+  if (is_single_node(spec)) {
+    return grain.n_nodes() == 1 && grain.bonds.empty();
+  }
+  const bool is_periodic = spec.shape == TemplateSpec::Shape::periodic_box;
+  if (is_periodic != grain.period.has_value() || (spec.n_nodes && *spec.n_nodes != grain.n_nodes())) {
+    return false;
+  }
+  const double volume = is_periodic ? grain.period->prod() : grain.n_nodes() / spec.density;
+  if (!(std::abs(grain.reference_volume - volume) <= 1e-9 * volume)) {
+    return false;
+  }
+  Eigen::Vector3d low = grain.position.front(), high = low;
+  for (const Eigen::Vector3d& x : grain.position) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  // Grains are compact: their bounding cuboid is not far larger than what they stand for.
+  if (!(((high - low).array() + spec.bond_cutoff).prod() <= 1e3 * (volume + 1e3))) {
+    return false;
+  }
+  const std::vector<Bond> bonds = bonds_closer_than(grain.position, spec.bond_cutoff, grain.period);
+  const auto same = [](const Bond& a, const Bond& b) {
+    return a.i == b.i && a.j == b.j && std::abs(a.r0 - b.r0) <= 1e-9 * b.r0;
+  };
+  return std::equal(bonds.begin(), bonds.end(), grain.bonds.begin(), grain.bonds.end(), same) && !floating_part(grain);
+}
+
+std::optional<GrainTemplate> stored_template(const fs::path& file, const TemplateSpec& spec) {
+  std::optional<GrainTemplate> grain = read_template(file, canonical_text(spec));
+  try {
+    return grain && belongs_to(spec, *grain) ? std::move(grain) : std::nullopt;
+  } catch (const std::invalid_argument&) { // a period too short for the bonds
+    return std::nullopt;
+  }
+}
+
+} // namespace
 
 fs::path default_cache_directory() {
   const auto variable = [](const char* name) -> std::string {
@@ -46,13 +92,13 @@ fs::path TemplateCache::file_of(const TemplateSpec& spec) const {
 }
 
 bool TemplateCache::contains(const TemplateSpec& spec) const {
-  return !directory_.empty() && read_template(file_of(spec), canonical_text(spec)).has_value();
+  return !directory_.empty() && stored_template(file_of(spec), spec).has_value();
 }
 
 GrainTemplate TemplateCache::get(const TemplateSpec& spec, const std::function<void()>& before_build) const {
   validate(spec);
   const std::string text = canonical_text(spec);
-  if (auto stored = directory_.empty() ? std::nullopt : read_template(file_of(spec), text)) {
+  if (auto stored = directory_.empty() ? std::nullopt : stored_template(file_of(spec), spec)) {
     return *std::move(stored);
   }
   if (before_build) {

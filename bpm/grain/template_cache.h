@@ -15,9 +15,9 @@ std::filesystem::path default_cache_directory();
 
 /// Templates on disk, one HDF5 file each, named by the hash of the specification.
 ///
-/// A file is used only if it holds the same canonical text and its checksum is right; otherwise it is built again and
-/// replaced. Files are written beside and renamed, so several programs may share a directory. A directory that cannot
-/// be written costs the saving, not the template.
+/// A file is used only if it holds the same canonical text, its checksum is right and its bonds are those of its nodes;
+/// otherwise it is built again and replaced. Files are written beside and renamed, so several programs may share a
+/// directory. A directory that cannot be written costs the saving, not the template.
 class TemplateCache {
 public:
   explicit TemplateCache(std::filesystem::path directory = default_cache_directory());

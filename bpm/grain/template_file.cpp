@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/grain/template_file.h"
 
+#include "bpm/grain/sound_template.h"
 #include "bpm/hdf5/hdf5_file.h"
 
 #include <cstdint>
@@ -55,7 +56,12 @@ Flat flatten(const GrainTemplate& grain) {
   return flat;
 }
 
+/// \throws std::invalid_argument when the arrays do not fit together or hold what no template can.
 GrainTemplate unflatten(const Flat& flat) {
+  if (flat.position.size() % 3 != 0 || flat.ends.size() != 2 * flat.r0.size() ||
+      (flat.period.size() != 3 && !flat.period.empty()) || flat.reference_volume.size() != 1) {
+    throw std::invalid_argument("its arrays have lengths that do not belong together");
+  }
   GrainTemplate grain;
   for (std::size_t n = 0; n + 2 < flat.position.size(); n += 3) {
     grain.position.emplace_back(flat.position[n], flat.position[n + 1], flat.position[n + 2]);
@@ -67,6 +73,9 @@ GrainTemplate unflatten(const Flat& flat) {
     grain.period = Eigen::Vector3d(flat.period[0], flat.period[1], flat.period[2]);
   }
   grain.reference_volume = flat.reference_volume.at(0);
+  if (const auto wrong = unsound_part(grain)) {
+    throw std::invalid_argument(*wrong);
+  }
   return grain;
 }
 

@@ -131,17 +131,6 @@ void File::make_group(const std::string& name) const {
   const Handle group(check(H5Gcreate2(id_, name.c_str(), links, H5P_DEFAULT, H5P_DEFAULT), "making group " + name));
 }
 
-bool File::has(const std::string& name) const {
-  for (std::size_t slash = name.find('/', 1);; slash = name.find('/', slash + 1)) {
-    if (H5Lexists(id_, name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) {
-      return false;
-    }
-    if (slash == std::string::npos) {
-      return true;
-    }
-  }
-}
-
 std::vector<hsize_t> File::shape(const std::string& name) const {
   const Handle dataset(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), "opening " + name));
   const Handle space(check(H5Dget_space(dataset), "reading " + name));
@@ -191,7 +180,14 @@ std::vector<std::string> File::texts_attribute(const std::string& object, const 
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0) {
     throw std::runtime_error(fmt::format("{}: attribute {} is not a string of fixed length", path_.string(), name));
   }
-  const std::size_t length = H5Tget_size(type), n = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
+  const std::size_t length = H5Tget_size(type);
+  const hssize_t points = H5Sget_simple_extent_npoints(space);
+  constexpr std::size_t most = 1 << 16; // bytes; attributes are small
+  if (points < 0 || points > static_cast<hssize_t>(most) || length > most ||
+      static_cast<std::size_t>(points) * length > most) {
+    throw std::runtime_error(fmt::format("{}: attribute {} is too large", path_.string(), name));
+  }
+  const auto n = static_cast<std::size_t>(points);
   std::string packed(n * length, '\0');
   check(H5Aread(attribute, type, packed.data()), "reading attribute " + name);
   std::vector<std::string> texts;
@@ -206,7 +202,12 @@ bool File::has_attribute(const std::string& object, const std::string& name) con
 }
 
 std::string File::text_attribute(const std::string& object, const std::string& name) const {
-  return texts_attribute(object, name).at(0);
+  const std::vector<std::string> texts = texts_attribute(object, name);
+  if (texts.size() != 1) {
+    throw std::runtime_error(
+        fmt::format("{}: attribute {} holds {} texts, not one", path_.string(), name, texts.size()));
+  }
+  return texts[0];
 }
 
 void File::write_text(const std::string& name, const std::string& text) const {
@@ -219,9 +220,14 @@ void File::write_text(const std::string& name, const std::string& text) const {
 }
 
 std::string File::read_text(const std::string& name) const {
+  const Dataset dataset_info = look(name);
+  if (dataset_info.content != Content::text || product(dataset_info.shape) != 1 ||
+      dataset_info.value_size > dataset_info.most_bytes) {
+    throw std::runtime_error(fmt::format("{}: {} is not a text of fixed length", path_.string(), name));
+  }
   const Handle dataset(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), "opening " + name));
   const Handle type(H5Dget_type(dataset));
-  std::string text(H5Tget_size(type), '\0');
+  std::string text(dataset_info.value_size, '\0');
   check(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), "reading " + name);
   return up_to_zero(text.data(), text.size());
 }
@@ -251,20 +257,18 @@ void File::read_raw(const std::string& name, void* values, hid_t type) const {
   check(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "reading " + name);
 }
 
-hsize_t File::n_values(const std::string& name) const {
-  return product(shape(name));
-}
-
-hsize_t File::frame_size(const std::string& name) const {
-  return product(shape(name), 1);
-}
-
 void File::make_growing_raw(const std::string& name, const Growing& layout, hid_t type, const void* fill) const {
   std::vector<hsize_t> now = {0}, most = {H5S_UNLIMITED}, chunk = {layout.frames_per_chunk};
   for (const hsize_t length : layout.frame_shape) {
     now.push_back(length);
     most.push_back(length);
     chunk.push_back(length);
+  }
+  const hsize_t row = H5Tget_size(type) * product(chunk) / (chunk.size() > 1 ? std::max<hsize_t>(chunk[1], 1) : 1);
+  if (chunk.size() > 1 && chunk[1] > layout.largest_chunk / row) {
+    const hsize_t most_rows = std::max<hsize_t>(layout.largest_chunk / row, 1);
+    const hsize_t n_slabs = (chunk[1] + most_rows - 1) / most_rows;
+    chunk[1] = (chunk[1] + n_slabs - 1) / n_slabs;
   }
   const Handle space(check(H5Screate_simple(static_cast<int>(now.size()), now.data(), most.data()), "shaping " + name));
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE)), links(H5Pcreate(H5P_LINK_CREATE));
@@ -287,6 +291,16 @@ int File::compression(const std::string& name) const {
   const bool has_level =
       H5Pget_filter_by_id2(creation, H5Z_FILTER_DEFLATE, &flags, &n_values, &level, 0, nullptr, nullptr) >= 0;
   return has_level ? static_cast<int>(level) : 0;
+}
+
+bool File::has_whole_frames(const std::string& name) const {
+  const Handle dataset(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), "opening " + name));
+  const Handle creation(H5Dget_create_plist(dataset));
+  const std::vector<hsize_t> extent = shape(name);
+  std::vector<hsize_t> chunk(extent.size(), 0);
+  return H5Pget_chunk(creation, static_cast<int>(chunk.size()), chunk.data()) == static_cast<int>(chunk.size()) &&
+         H5Pget_nfilters(creation) == 0 && chunk[0] == 1 &&
+         std::equal(chunk.begin() + 1, chunk.end(), extent.begin() + 1);
 }
 
 void File::set_frames(const std::string& name, hsize_t n_frames) const {

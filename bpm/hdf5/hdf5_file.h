@@ -8,6 +8,7 @@
 #include <hdf5.h>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -57,8 +58,21 @@ public:
   static File open(const std::filesystem::path& path, bool writable, bool with_rooms = false);
 
   void make_group(const std::string& name) const;
+  /// \throws std::runtime_error when the name leads through a link to somewhere else.
   bool has(const std::string& name) const;
   std::vector<hsize_t> shape(const std::string& dataset) const;
+
+  enum class Content { integer, real, text, other };
+  /// What a dataset says of itself, before anything of it is read.
+  struct Dataset {
+    std::vector<hsize_t> shape;
+    Content content = Content::other;
+    std::size_t value_size = 0;   ///< bytes
+    std::uint64_t most_bytes = 0; ///< no more can be read from what the file stores of it
+  };
+  /// \throws std::runtime_error when there is no such dataset, or when its values lie outside this file: a dataset of
+  /// another file behind a link, a virtual one, one with external storage.
+  Dataset look(const std::string& dataset) const;
 
   void set_attribute(const std::string& object, const std::string& name, const std::string& text) const;
   void set_attribute(const std::string& object, const std::string& name, std::span<const std::int32_t> values) const;
@@ -79,14 +93,15 @@ public:
   template <typename T> void rewrite(const std::string& name, std::span<const T> values) const {
     rewrite_raw(name, values.data(), type_of<T>());
   }
+  /// \throws std::runtime_error unless it holds numbers of T's kind, as many as the file can hold.
   template <typename T> std::vector<T> read(const std::string& name) const {
-    std::vector<T> values(n_values(name));
+    std::vector<T> values(n_values(name, content_of<T>()));
     read_raw(name, values.data(), type_of<T>());
     return values;
   }
-  /// One frame of a growing dataset.
+  /// One frame of a growing dataset. \throws std::runtime_error as read.
   template <typename T> std::vector<T> read_frame(const std::string& name, hsize_t frame) const {
-    std::vector<T> values(frame_size(name));
+    std::vector<T> values(frame_size(name, content_of<T>()));
     read_frame_raw(name, frame, values.data(), type_of<T>());
     return values;
   }
@@ -96,6 +111,8 @@ public:
     std::vector<hsize_t> frame_shape;
     hsize_t frames_per_chunk = 1;
     int compression = 0; ///< 0 (none) .. 9
+    /// HDF5 stores no chunk of 4 GiB and more: larger frames are cut along their first length, bytes.
+    std::uint64_t largest_chunk = (std::uint64_t{1} << 32) - 1;
   };
   template <typename T> void make_growing(const std::string& name, const Growing& layout, T fill) const {
     make_growing_raw(name, layout, type_of<T>(), &fill);
@@ -109,6 +126,8 @@ public:
     return make_room_raw(name, frame, type_of<T>());
   }
   int compression(const std::string& name) const;
+  /// Is a frame one chunk, as it is stored? Only then make_room has a place for all of it.
+  bool has_whole_frames(const std::string& name) const;
   void set_frames(const std::string& name, hsize_t n_frames) const;
   /// A second name for the same dataset.
   void link(const std::string& name, const std::string& other_name) const;
@@ -131,8 +150,13 @@ private:
   void write_raw(const std::string& name, const void* values, hid_t type, hsize_t n, hsize_t width) const;
   void rewrite_raw(const std::string& name, const void* values, hid_t type) const;
   void read_raw(const std::string& name, void* values, hid_t type) const;
-  hsize_t n_values(const std::string& name) const;
-  hsize_t frame_size(const std::string& name) const;
+  template <typename T> static constexpr Content content_of() {
+    return std::is_floating_point_v<T> ? Content::real : Content::integer;
+  }
+  hsize_t n_values(const std::string& name, Content wanted) const;
+  hsize_t frame_size(const std::string& name, Content wanted) const;
+  hsize_t values_in(const std::string& name, std::size_t from, Content wanted) const;
+  std::uint64_t file_length() const;
   void make_growing_raw(const std::string& name, const Growing& layout, hid_t type, const void* fill) const;
   void write_frame_raw(const std::string& name, hsize_t frame, const void* values, hid_t type, hsize_t n) const;
   std::uint64_t make_room_raw(const std::string& name, hsize_t frame, hid_t type) const;

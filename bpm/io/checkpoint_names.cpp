@@ -11,6 +11,9 @@ namespace boba {
 
 namespace {
 
+/// No run writes as many; a file of a larger number is not one of ours, and numbers go on without running over.
+constexpr std::uint64_t largest_number = 999'999'999'999;
+
 constexpr std::string_view stem = "checkpoint-", ending = ".boba";
 
 std::optional<std::uint64_t> number_in(const std::string& name) {
@@ -20,7 +23,8 @@ std::optional<std::uint64_t> number_in(const std::string& name) {
   std::uint64_t number = 0;
   const char* end = name.data() + name.size() - ending.size();
   const auto [stop, error] = std::from_chars(name.data() + stem.size(), end, number);
-  return error == std::errc() && stop == end ? std::optional(number) : std::nullopt;
+  const bool is_number = error == std::errc() && stop == end && number <= largest_number;
+  return is_number ? std::optional(number) : std::nullopt;
 }
 
 } // namespace

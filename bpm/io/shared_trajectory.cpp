@@ -42,10 +42,10 @@ SharedTrajectory::SharedTrajectory(const Ranks& ranks, const std::filesystem::pa
     : ranks_(ranks), first_node_(std::move(first_node)) {
   ranks.on_root([&] {
     writer_.emplace(open(ranks.is_distributed()));
-    is_compressed_ = writer_->is_compressed();
+    has_rooms_ = writer_->has_rooms();
   });
   if (ranks.is_distributed()) {
-    ranks.broadcast(is_compressed_);
+    ranks.broadcast(has_rooms_);
     ranks.collectively([&] { file_.emplace(path); });
   }
 }
@@ -72,7 +72,7 @@ void SharedTrajectory::write_together(const Snapshot& own) {
   } frame;
   ranks_.on_root([&] {
     frame.is_new = writer_->is_new(own);
-    if (frame.is_new && !is_compressed_) {
+    if (frame.is_new && has_rooms_) {
       frame.places = writer_->make_room(own);
     }
   });
@@ -80,7 +80,7 @@ void SharedTrajectory::write_together(const Snapshot& own) {
   if (!frame.is_new) {
     return;
   }
-  if (is_compressed_) {
+  if (!has_rooms_) {
     write_gathered(own);
     return;
   }

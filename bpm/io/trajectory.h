@@ -59,12 +59,13 @@ public:
     std::uint64_t position = 0, image = 0, velocity = 0; ///< 0 for velocities that are not stored
   };
   /// write() in two halves, for nodes that others put there in between; only of a file made or opened with
-  /// `nodes_by_others` and not compressed, and only of a frame that is new. The snapshot's nodes are not looked at.
+  /// `nodes_by_others` that has_rooms(), and only of a frame that is new. The snapshot's nodes are not looked at.
   NodePlaces make_room(const Snapshot& snapshot);
   void finish(const Snapshot& snapshot);
   /// False for the step that was written last. \throws std::invalid_argument when it goes back in time.
   bool is_new(const Snapshot& snapshot) const;
-  bool is_compressed() const;
+  /// Are a frame's nodes one piece of the file as they lie in memory? Otherwise one writer must put them there.
+  bool has_rooms() const;
   /// From now on nothing reaches the file any more: it stays as it was last flushed.
   void give_up();
 

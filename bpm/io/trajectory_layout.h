@@ -41,6 +41,9 @@ inline constexpr const char* closed = "/parameters/closed";
 inline constexpr double not_written = std::numeric_limits<double>::quiet_NaN();
 inline constexpr std::int32_t image_not_written = std::numeric_limits<std::int32_t>::min();
 
+/// \throws InputError with the file's name in front.
+[[noreturn]] void refuse_file(const hdf5::File& file, const std::string& why);
+
 /// Steps of the frames that are complete: every dataset has them, and no value is still the fill value.
 std::vector<std::int64_t> complete_steps(const hdf5::File& file);
 

@@ -2,7 +2,9 @@
 #include "bpm/io/trajectory_packing.h"
 
 #include "bpm/io/input_error.h"
+#include "bpm/io/naming.h"
 #include "bpm/io/trajectory.h"
+#include "bpm/packing/sound_packing.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -10,8 +12,6 @@
 namespace boba {
 
 namespace {
-
-constexpr double bulk_density = 1.226; // nodes per d^3; docs/notation.md, "Grain"
 
 /// The undeformed nodes of a grain's template where they are stored, else the grain as the first frame shows it.
 std::vector<Vector3> arrangement_of(const Topology& topology, const Snapshot& first, int grain) {
@@ -27,19 +27,15 @@ std::vector<Vector3> arrangement_of(const Topology& topology, const Snapshot& fi
   return arrangement;
 }
 
-/// Undeformed networks by template number: bonds of the first grain that has it.
-std::vector<std::shared_ptr<const GrainTemplate>> networks_of(const Topology& topology, const Snapshot& first,
-                                                              const std::filesystem::path& file) {
-  int n_templates = 0;
-  for (const int t : topology.template_index) {
-    if (t < 0) {
-      throw InputError(fmt::format("{}: a grain has the template number {}", file.string(), t));
-    }
-    n_templates = std::max(n_templates, t + 1);
-  }
-  if (n_templates > topology.n_grains()) {
-    throw InputError(fmt::format("{}: more templates than grains", file.string()));
-  }
+struct Networks {
+  std::vector<std::shared_ptr<const GrainTemplate>> templates;
+  std::vector<int> number; ///< in `templates`, by the stored number; a template that no grain is of has none (-1)
+};
+
+/// Undeformed networks: bonds of the first grain of each template.
+Networks networks_of(const Topology& topology, const Snapshot& first, const std::filesystem::path& file) {
+  const auto& index = topology.template_index; // not beyond the number of grains, or of undeformed templates
+  const int n_templates = 1 + *std::max_element(index.begin(), index.end());
   std::vector<GrainTemplate> networks(n_templates);
   std::vector<int> model(n_templates, -1);
   for (int g = topology.n_grains() - 1; g >= 0; --g) {
@@ -62,16 +58,17 @@ std::vector<std::shared_ptr<const GrainTemplate>> networks_of(const Topology& to
       }
     }
   }
-  std::vector<std::shared_ptr<const GrainTemplate>> result;
+  Networks result{{}, std::vector<int>(n_templates, -1)};
   for (int t = 0; t < n_templates; ++t) {
     if (model[t] < 0) {
-      throw InputError(fmt::format("{}: no grain has the template number {}", file.string(), t));
+      continue;
     }
     networks[t].position = arrangement_of(topology, first, model[t]);
     std::sort(networks[t].bonds.begin(), networks[t].bonds.end(),
               [](const Bond& a, const Bond& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
-    networks[t].reference_volume = networks[t].n_nodes() / bulk_density;
-    result.push_back(std::make_shared<const GrainTemplate>(std::move(networks[t])));
+    networks[t].reference_volume = nominal_volume(networks[t].n_nodes());
+    result.number[t] = static_cast<int>(result.templates.size());
+    result.templates.push_back(std::make_shared<const GrainTemplate>(std::move(networks[t])));
   }
   return result;
 }
@@ -84,10 +81,11 @@ Packing read_trajectory_packing(const std::filesystem::path& file, int frame, st
   Snapshot state = reader.snapshot(frame);
   Packing packing;
   packing.box = state.box;
-  packing.templates = networks_of(topology, reader.snapshot(0), file);
+  Networks networks = networks_of(topology, reader.snapshot(0), file);
+  packing.templates = std::move(networks.templates);
   for (int g = 0; g < topology.n_grains(); ++g) {
-    packing.grains.push_back(
-        {topology.template_index[g], topology.species[g], alpha.value_or(topology.alpha[g]), topology.molecule[g]});
+    packing.grains.push_back({networks.number[topology.template_index[g]], topology.species[g],
+                              alpha.value_or(topology.alpha[g]), topology.molecule[g]});
   }
   packing.id = topology.id;
   packing.position = std::move(state.position);
@@ -99,6 +97,7 @@ Packing read_trajectory_packing(const std::filesystem::path& file, int frame, st
     packing.velocity[i][0] -= state.streaming_rate * (packing.position[i][1] - packing.box.origin()[1]);
   }
   packing.velocity.resize(packing.position.size(), Vector3::Zero());
+  naming(file, [&] { check_sound(packing); });
   return packing;
 }
 

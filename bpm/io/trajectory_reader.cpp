@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/io/id_table.h"
 #include "bpm/io/input_error.h"
 #include "bpm/io/trajectory.h"
+#include "bpm/io/trajectory_checks.h"
 #include "bpm/io/trajectory_layout.h"
+#include "bpm/io/trajectory_topology.h"
 
 #include <algorithm>
+#include <charconv>
 #include <fmt/format.h>
 
 namespace boba {
@@ -25,10 +27,6 @@ template <typename Call> auto as_input_error(Call call) {
   }
 }
 
-template <typename T> std::vector<T> narrowed(const std::vector<std::int64_t>& values) {
-  return {values.begin(), values.end()};
-}
-
 TrajectoryOrigin read_origin(const File& file) {
   TrajectoryOrigin result;
   result.scene = file.read_text("/parameters/scene");
@@ -36,12 +34,11 @@ TrajectoryOrigin read_origin(const File& file) {
   result.git_hash = file.read_text("/parameters/git_hash");
   result.author = file.text_attribute("/h5md/author", "name");
   const std::string seed = file.read_text("/parameters/seed");
-  result.seed = std::stoull(seed);
+  const auto [end, error] = std::from_chars(seed.data(), seed.data() + seed.size(), result.seed);
+  if (error != std::errc() || end != seed.data() + seed.size()) {
+    refuse_file(file, "/parameters/seed is not a whole number of 64 bits");
+  }
   return result;
-}
-
-[[noreturn]] void refuse(const File& file, const std::string& why) {
-  throw InputError(fmt::format("{}: {}", file.path().string(), why));
 }
 
 std::vector<Vector3> as_vectors(const std::vector<double>& numbers) {
@@ -52,53 +49,20 @@ std::vector<Vector3> as_vectors(const std::vector<double>& numbers) {
   return vectors;
 }
 
-std::vector<std::vector<Vector3>> read_undeformed(const File& file) {
-  const std::string folder = std::string(grains) + "/";
-  std::vector<std::vector<Vector3>> undeformed;
-  if (!file.has(folder + "undeformed_position")) {
-    return undeformed;
+std::array<bool, 3> read_boundary(const File& file) {
+  std::array<bool, 3> periodic = {true, true, true};
+  if (!file.has_attribute(box, "boundary")) {
+    return periodic; // no frame yet
   }
-  const std::vector<Vector3> nodes = as_vectors(file.read<double>(folder + "undeformed_position"));
-  const auto first = file.read<std::int64_t>(folder + "undeformed_first_node");
-  if (first.empty() || first.front() != 0 || first.back() != static_cast<std::int64_t>(nodes.size()) ||
-      !std::is_sorted(first.begin(), first.end())) {
-    refuse(file, folder + "undeformed_first_node does not divide the undeformed nodes into templates");
+  const std::vector<std::string> boundary = file.texts_attribute(box, "boundary");
+  const auto is_known = [](const std::string& word) { return word == "periodic" || word == "none"; };
+  if (boundary.size() != 3 || !std::all_of(boundary.begin(), boundary.end(), is_known)) {
+    refuse_file(file, fmt::format("the attribute boundary of {} must be three words, periodic or none", box));
   }
-  for (std::size_t t = 0; t + 1 < first.size(); ++t) {
-    undeformed.emplace_back(nodes.begin() + first[t], nodes.begin() + first[t + 1]);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    periodic[axis] = boundary[axis] == "periodic";
   }
-  return undeformed;
-}
-
-Topology read_topology(const File& file) {
-  const std::string folder = std::string(grains) + "/";
-  Topology topology;
-  topology.id = file.read<std::int64_t>(std::string(all) + "/id");
-  topology.first_node = file.read<std::int64_t>(folder + "first_node");
-  topology.molecule = file.read<std::int64_t>(folder + "molecule");
-  topology.species = narrowed<int>(file.read<std::int64_t>(folder + "species"));
-  topology.template_index = narrowed<int>(file.read<std::int64_t>(folder + "template"));
-  topology.alpha = file.read<double>(folder + "alpha");
-  topology.undeformed = read_undeformed(file);
-  const std::vector<std::int64_t>& first = topology.first_node;
-  if (first.empty() || first.front() != 0 || first.back() != topology.n_nodes() ||
-      !std::is_sorted(first.begin(), first.end())) {
-    refuse(file, folder + "first_node does not divide the nodes into grains");
-  }
-  const std::vector<std::int64_t> pairs = file.read<std::int64_t>("/connectivity/bonds");
-  const std::vector<double> r0 = file.read<double>("/connectivity/bonds_r0");
-  if (pairs.size() != 2 * r0.size()) {
-    refuse(file, "/connectivity/bonds and bonds_r0 have different lengths");
-  }
-  const IdTable nodes(topology.id);
-  for (std::size_t bond = 0; bond < r0.size(); ++bond) {
-    const Topology::Pair pair{nodes.row(pairs[2 * bond]), nodes.row(pairs[2 * bond + 1]), r0[bond]};
-    if (pair.i == IdTable::none || pair.j == IdTable::none) {
-      refuse(file, fmt::format("bond {} - {} joins nodes that are not there", pairs[2 * bond], pairs[2 * bond + 1]));
-    }
-    topology.bonds.push_back(pair);
-  }
-  return topology;
+  return periodic;
 }
 
 } // namespace
@@ -121,25 +85,21 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : impl_(st
     impl_->file = File::open(path, false);
     const File& file = impl_->file;
     if (!file.has(grains) || !file.has(position)) {
-      refuse(file, "is an HDF5 file, but not a trajectory written by Boba (no /parameters/grains)");
+      refuse_file(file, "is an HDF5 file, but not a trajectory written by Boba (no /parameters/grains)");
     }
     origin_ = read_origin(file);
     topology_ = read_topology(file);
+    check_growing(file, topology_);
     steps_ = complete_steps(file);
     has_velocity_ = file.has(velocity);
-    if (file.has_attribute(box, "boundary")) {
-      const std::vector<std::string> boundary = file.texts_attribute(box, "boundary");
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        impl_->periodic[axis] = boundary.at(axis) == "periodic";
-      }
-    }
+    impl_->periodic = read_boundary(file);
   });
 }
 
 Snapshot TrajectoryReader::snapshot(std::int64_t frame) const {
   const std::int64_t index = frame < 0 ? frame + n_frames() : frame;
   if (index < 0 || index >= n_frames()) {
-    refuse(impl_->file, fmt::format("has no frame {}; it holds {} complete frames", frame, n_frames()));
+    refuse_file(impl_->file, fmt::format("has no frame {}; it holds {} complete frames", frame, n_frames()));
   }
   return as_input_error([&] {
     const Impl& in = *impl_;
@@ -151,7 +111,7 @@ Snapshot TrajectoryReader::snapshot(std::int64_t frame) const {
       snapshot.streaming_rate = in.frame_of<double>(streaming_rate, index).at(0);
     }
     const std::vector<double> h = in.frame_of<double>(edges, index), corner = in.frame_of<double>(box_origin, index);
-    snapshot.box = Box(Vector3(corner.data()), Vector3(h[0], h[4], h[8]), Vector3(h[3], h[6], h[7]), in.periodic);
+    snapshot.box = checked_box(in.file, index, corner, h, in.periodic);
     snapshot.position = as_vectors(in.frame_of<double>(position, index));
     const std::vector<std::int32_t> images = in.frame_of<std::int32_t>(image, index);
     for (std::size_t node = 0; node < snapshot.position.size(); ++node) {
@@ -167,6 +127,7 @@ Snapshot TrajectoryReader::snapshot(std::int64_t frame) const {
     for (std::size_t i = 0; i < stress.size(); ++i) {
       snapshot.grain_stress[i / 6][i % 6] = stress[i];
     }
+    check_frame(in.file, index, topology_, snapshot);
     return snapshot;
   });
 }
@@ -174,10 +135,10 @@ Snapshot TrajectoryReader::snapshot(std::int64_t frame) const {
 std::int64_t TrajectoryReader::frame_of_step(std::int64_t step) const {
   const auto found = std::lower_bound(steps_.begin(), steps_.end(), step);
   if (found == steps_.end() || *found != step) {
-    refuse(impl_->file, steps_.empty()
-                            ? "holds no complete frame"
-                            : fmt::format("has no frame of step {}; there are {} frames between steps {} and {}", step,
-                                          n_frames(), steps_.front(), steps_.back()));
+    refuse_file(impl_->file, steps_.empty()
+                                 ? "holds no complete frame"
+                                 : fmt::format("has no frame of step {}; there are {} frames between steps {} and {}",
+                                               step, n_frames(), steps_.front(), steps_.back()));
   }
   return found - steps_.begin();
 }

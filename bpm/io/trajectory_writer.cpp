@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/trajectory.h"
+#include "bpm/io/trajectory_checks.h"
 #include "bpm/io/trajectory_head.h"
 #include "bpm/io/trajectory_layout.h"
 #include "bpm/io/wrapped_nodes.h"
@@ -156,6 +157,7 @@ TrajectoryWriter TrajectoryWriter::go_on(const std::filesystem::path& path, cons
   impl->n_grains = static_cast<std::size_t>(topology.n_grains());
   impl->has_velocity = file.has(velocity);
   impl->has_streaming_rate = file.has(streaming_rate);
+  check_growing(file, topology);
   const std::vector<std::int64_t> steps = complete_steps(file);
   impl->n_frames = std::upper_bound(steps.begin(), steps.end(), last_step) - steps.begin();
   for (const std::string& name : all_growing(file)) {
@@ -179,8 +181,8 @@ bool TrajectoryWriter::is_new(const Snapshot& snapshot) const {
   return true;
 }
 
-bool TrajectoryWriter::is_compressed() const {
-  return impl_->file.compression(value_of(position)) > 0;
+bool TrajectoryWriter::has_rooms() const {
+  return impl_->file.has_whole_frames(value_of(position));
 }
 
 /// Room on the disk, and what can only be told once there is a frame.

@@ -102,7 +102,8 @@ Snapshot small_snapshot(std::int64_t step) {
     snapshot.velocity.emplace_back(i, 0.1 * s, -i);
     snapshot.force.emplace_back(0.25 * i, s, 1.0);
   }
-  snapshot.grain_centre = {Vector3(1, 2, s), Vector3(-1, -2, -s)};
+  const std::vector<Vector3>& x = snapshot.position;
+  snapshot.grain_centre = {(x[0] + x[1] + x[2]) / 3.0, (x[3] + x[4]) / 2.0};
   snapshot.grain_stress = {{1, 2, 3, 4, 5, s}, {-1, -2, -3, -4, -5, -s}};
   return snapshot;
 }

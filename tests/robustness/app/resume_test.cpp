@@ -2,9 +2,12 @@
 // A run that was stopped, killed or given another number of threads ends as one that was left alone, bit for bit.
 #include "tests/robustness/app/same_run.h"
 
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 
 namespace boba::test {
@@ -214,6 +217,30 @@ TEST(Resume, AnotherInstructionSetAsksForLeave) {
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_NE(refused.err.find("abacus"), std::string::npos) << refused.err;
   EXPECT_EQ(boba({"resume", "alone", "--allow-other-isa"}, folder).exit_code, 0);
+}
+
+TEST(Resume, WrongNumbersUnderARightChecksumAreRefused) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  for (const char* precision : {"double", "mixed"}) {
+    std::filesystem::remove_all(folder / "alone");
+    run_alone(folder, {"--set", "stage.2.strain=0.01", "--set", std::string("run.precision=") + precision});
+    const CheckpointData right = latest_checkpoint(folder / "alone/checkpoints").data;
+    const auto expect_refused = [&](const char* what, auto change) {
+      CheckpointData wrong = right;
+      change(wrong);
+      write_checkpoint(folder / "alone/checkpoints", wrong);
+      const ProgramResult refused = boba({"resume", "alone"}, folder);
+      EXPECT_EQ(refused.exit_code, 2) << precision << " " << what << ": " << refused.err;
+      EXPECT_NE(refused.err.find(".boba: "), std::string::npos) << refused.err;
+      EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
+    };
+    using Data = CheckpointData;
+    expect_refused("a node at 1e300", [](Data& d) { d.real["packing/position"][4] = 1e300; });
+    expect_refused("r0", [](Data& d) { d.real["packing/template0/r0"][7] *= 1.05; });
+    expect_refused("negative r0", [](Data& d) { d.real["packing/template0/r0"][7] = -1.0; });
+    expect_refused("corner", [](Data& d) { d.real["packing/origin"][1] = std::numeric_limits<double>::infinity(); });
+  }
 }
 
 TEST(Resume, AScenesInputFilesMayBeGone) {

@@ -55,6 +55,18 @@ TEST(Checkpoint, ReadsBackEveryBit) {
   }
 }
 
+TEST(Checkpoint, AStrayFileOfAHugeNumberHidesNothing) {
+  for (const std::string stray :
+       {"18446744073709551615", "18446744073709551614", "1000000000000", "9999999999999999"}) {
+    const TemporaryFolder folder;
+    write_checkpoint(folder / "", sample(1));
+    std::filesystem::copy_file(folder / "checkpoint-000001.boba", folder / ("checkpoint-" + stray + ".boba"));
+    EXPECT_EQ(write_checkpoint(folder / "", sample(2)), folder / "checkpoint-000002.boba") << stray;
+    EXPECT_EQ(write_checkpoint(folder / "", sample(3)), folder / "checkpoint-000003.boba") << stray;
+    EXPECT_EQ(latest_checkpoint(folder / "").data.integer.at("step").at(0), 3) << stray;
+  }
+}
+
 TEST(Checkpoint, IsTheSameFileWhenWrittenInPieces) {
   const TemporaryFolder folder;
   CheckpointData data = sample(1);

@@ -97,6 +97,28 @@ TEST_F(TemplateCacheTest, AFileOfAnotherSpecificationUnderTheSameHashIsRebuilt) 
   EXPECT_TRUE(built_);
 }
 
+TEST_F(TemplateCacheTest, WrongNumbersUnderARightChecksumAreRebuilt) {
+  const GrainTemplate right = get();
+  const auto expect_rebuilt = [&](const char* what, auto change) {
+    GrainTemplate wrong = right;
+    change(wrong);
+    write_template(file(), wrong, canonical_text(spec_));
+    EXPECT_FALSE(TemplateCache(directory_).contains(spec_)) << what;
+    expect_equal(get(), right);
+    EXPECT_TRUE(built_) << what;
+  };
+  expect_rebuilt("a node far away", [](GrainTemplate& g) { g.position[3] = Eigen::Vector3d(1e300, 0.0, 0.0); });
+  expect_rebuilt("a node a little off", [](GrainTemplate& g) { g.position[3][1] += 1e-4; });
+  expect_rebuilt("nodes spread over 1e9 d", [](GrainTemplate& g) { g.position[3] = Eigen::Vector3d(1e9, -1e9, 1e9); });
+  expect_rebuilt("a rest length", [](GrainTemplate& g) { g.bonds[5].r0 *= 1.01; });
+  expect_rebuilt("a bond less", [](GrainTemplate& g) { g.bonds.pop_back(); });
+  expect_rebuilt("a bond of no node", [](GrainTemplate& g) { g.bonds.back().j = 1 << 30; });
+  expect_rebuilt("a bond twice", [](GrainTemplate& g) { g.bonds.push_back(g.bonds.back()); });
+  expect_rebuilt("no nodes", [](GrainTemplate& g) { g = GrainTemplate{}; });
+  expect_rebuilt("a volume", [](GrainTemplate& g) { g.reference_volume = -1.0; });
+  expect_rebuilt("a period", [](GrainTemplate& g) { g.period = Eigen::Vector3d(1e-300, 1.0, 1.0); });
+}
+
 TEST_F(TemplateCacheTest, ATextFileInItsPlaceIsRebuilt) {
   fs::create_directories(directory_);
   std::ofstream(file()) << "not a template\n";

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/hdf5/hdf5_file.h"
 #include "bpm/io/input_error.h"
 #include "bpm/io/trajectory.h"
 #include "tests/support/small_packings.h"
@@ -70,9 +71,9 @@ TEST(Trajectory, ReadsBackWhatWasWritten) {
     const TemporaryFolder folder;
     const auto path = folder / "run.h5md";
     TrajectoryWriter writer(path, small_topology(), small_origin(), options);
-    write_frames(writer, {5, 6, 1000000000000});
+    write_frames(writer, {5, 6, 3000000000});
     EXPECT_EQ(writer.n_frames(), 3);
-    expect_frames(path, {5, 6, 1000000000000});
+    expect_frames(path, {5, 6, 3000000000});
     const TrajectoryReader reader(path);
     EXPECT_EQ(reader.has_velocity(), options.velocity);
     EXPECT_EQ(reader.origin().scene, small_origin().scene);
@@ -152,6 +153,28 @@ TEST(Trajectory, WritesManyFrames) {
     }
   }
   expect_frames(path, steps);
+}
+
+TEST(Trajectory, FramesBeyondTheLargestChunkAreCutIntoSlabs) {
+  const TemporaryFolder folder;
+  const hdf5::File file = hdf5::File::create(folder / "a.h5");
+  // HDF5 refuses chunks of 4 GiB: 178956971 nodes. Nothing is written of them.
+  file.make_group("/large");
+  EXPECT_NO_THROW(file.make_growing<double>("/large/value", {{200'000'000, 3}, 1, 0}, 0.0));
+  EXPECT_FALSE(file.has_whole_frames("/large/value"));
+  // The same for a small limit, with values.
+  file.make_growing<double>("/small", {{7, 3}, 1, 0, 3 * 24}, 0.0);
+  file.make_growing<double>("/whole", {{7, 3}, 1, 0}, 0.0);
+  EXPECT_FALSE(file.has_whole_frames("/small"));
+  EXPECT_TRUE(file.has_whole_frames("/whole"));
+  for (const hsize_t frame : {0, 1}) {
+    std::vector<double> values(21);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      values[k] = static_cast<double>(100 * frame + k);
+    }
+    file.write_frame<double>("/small", frame, values);
+    EXPECT_EQ(file.read_frame<double>("/small", frame), values);
+  }
 }
 
 TEST(Trajectory, KeepsWallsOpen) {
