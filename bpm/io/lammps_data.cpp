@@ -243,9 +243,6 @@ void DataReader::read_rows(std::int64_t n_rows, std::string_view section, ReadRo
     if (on_section_name()) {
       in_.fail(fmt::format("section '{}' ends after {} of the {} rows that the header gives", section, row, n_rows));
     }
-    if (!in_.has_line_end()) {
-      in_.fail_cut_off("the last line has no line end: the file was cut off, and the last number may lack digits");
-    }
     read_row();
   }
 }

@@ -32,9 +32,13 @@ void DumpReader::need_line(std::string_view what) {
 
 std::optional<FrameHead> DumpReader::next_head() {
   FrameHead head;
-  bool has_step = false, has_count = false, has_box = false;
+  bool has_begun = false, has_step = false, has_count = false, has_box = false;
   while (in_.next_with_fields()) {
     const std::string_view line = in_.line();
+    if (!in_.has_line_end() && (line.starts_with("ITEM:") || std::string_view("ITEM:").starts_with(line))) {
+      in_.fail_cut_off("the file ends inside a frame's head");
+    }
+    has_begun = true;
     if (line.starts_with("ITEM: TIMESTEP")) {
       need_line("the time step");
       head.frame.timestep = in_.integer(0, "time step");
@@ -59,13 +63,11 @@ std::optional<FrameHead> DumpReader::next_head() {
       }
       head.columns = read_columns();
       return head;
-    } else if (!in_.has_line_end() && (line.starts_with("ITEM:") || std::string_view("ITEM:").starts_with(line))) {
-      in_.fail_cut_off("the file ends inside a frame's head");
     } else {
       in_.fail("a line that begins with 'ITEM:' of a text dump of atoms is needed here");
     }
   }
-  if (has_step || has_count || has_box) {
+  if (has_begun) {
     in_.fail_cut_off("the file ends inside a frame's head");
   }
   return std::nullopt;

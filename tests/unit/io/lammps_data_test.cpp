@@ -156,7 +156,6 @@ TEST(LammpsData, RefusesRowsThatMeanSomethingElse) {
   expect("Atoms # bond", "1 1 1 1 1 1 0\n", "7 columns; atom style 'bond' has 6, or 9");
   expect("Atoms", "1 1 1 2.0 1.0 1 1 1\n", "8 columns can be");
   expect("Atoms # bond", "1 1 1 1 1e300 1\n", "the position is 1 1e+300 1");
-  expect("Atoms # bond", "1 1 1 1 1 1.25", "the last line has no line end");
 }
 
 TEST(LammpsData, ReadsTypeLabels) {
