@@ -24,12 +24,16 @@ Snapshot frame_of(const Packing& packing, std::int64_t step) {
   snapshot.step = step;
   snapshot.time = 0.1 * static_cast<double>(step);
   snapshot.box = packing.box;
-  for (std::size_t node = 0; node < packing.position.size(); ++node) {
-    snapshot.position.push_back(packing.position[node] + vector());
-    snapshot.velocity.push_back(vector());
-  }
+  const std::vector<std::int64_t> first = packing.first_nodes();
   for (int g = 0; g < packing.n_grains(); ++g) {
-    snapshot.grain_centre.push_back(vector());
+    const Vector3 shift = vector(); // grains fly far, but stay whole
+    Vector3 sum = Vector3::Zero();
+    for (std::int64_t node = first[g]; node < first[g + 1]; ++node) {
+      snapshot.position.push_back(packing.position[node] + shift + 1e-3 * vector());
+      snapshot.velocity.push_back(vector());
+      sum += snapshot.position.back();
+    }
+    snapshot.grain_centre.push_back(sum / static_cast<double>(first[g + 1] - first[g]));
     snapshot.grain_stress.push_back({far(random), 1.0, 2.0, 3.0, 4.0, 5.0});
   }
   return snapshot;
