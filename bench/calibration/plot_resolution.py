@@ -29,13 +29,23 @@ def main(picture, folders):
                 for model, value in row["continuum"].items():
                     if model in COLOURS:
                         points.setdefault((row["alpha"], model), []).append(
-                            (seconds, abs(row["particles"] / value - 1), (row["particles_error"] or 0.0) / value))
+                            (seconds, abs(row["particles"] / value - 1), (row["particles_error"] or 0.0) / value)
+                        )
     figure, axis = plt.subplots(figsize=(6.5, 4.3), constrained_layout=True)
     for (alpha, model), curve in points.items():
         seconds, error, scatter = zip(*sorted(curve))
         down = [min(s, 0.9 * e) for e, s in zip(error, scatter)]
-        axis.errorbar(seconds, error, yerr=(down, scatter), fmt=("o-" if alpha == 0 else "s--"), color=COLOURS[model], ms=4, lw=1, capsize=2,
-                      label=f"nodes, alpha = {alpha:g}, against {model.replace('_', ' + ')}")
+        axis.errorbar(
+            seconds,
+            error,
+            yerr=(down, scatter),
+            fmt=("o-" if alpha == 0 else "s--"),
+            color=COLOURS[model],
+            ms=4,
+            lw=1,
+            capsize=2,
+            label=f"nodes, alpha = {alpha:g}, against {model.replace('_', ' + ')}",
+        )
     axis.plot(*zip(*CONTINUUM), "k^-", ms=4, lw=1, label="continuum, linear, against the exact series")
     axis.set_xscale("log")
     axis.set_yscale("log")

@@ -25,7 +25,7 @@ def graded(fine, width, growth, length):
     while lines[-1] < length:
         step *= growth
         lines.append(lines[-1] + step)
-    tail = np.array(lines[len(np.arange(0, width + 0.5 * fine, fine)) - 1:])
+    tail = np.array(lines[len(np.arange(0, width + 0.5 * fine, fine)) - 1 :])
     tail = tail[0] + (tail - tail[0]) * (length - tail[0]) / (tail[-1] - tail[0])
     return np.concatenate([lines[: len(lines) - len(tail)], tail])
 
@@ -78,8 +78,12 @@ def mesh_lines(grids):
         lines += [f"{e}, " + ", ".join(map(str, nodes)) for e, nodes in grid.elements.items()]
     lines += ["*MATERIAL, NAME=SOFT", "*ELASTIC", f"{YOUNG}, {POISSON}", "*SOLID SECTION, ELSET=BODY, MATERIAL=SOFT"]
     if len(grids) > 1:
-        lines += ["*MATERIAL, NAME=HARD", "*ELASTIC", f"{1e5 * YOUNG}, 0.3",
-                  "*SOLID SECTION, ELSET=PLATE, MATERIAL=HARD"]
+        lines += [
+            "*MATERIAL, NAME=HARD",
+            "*ELASTIC",
+            f"{1e5 * YOUNG}, 0.3",
+            "*SOLID SECTION, ELSET=PLATE, MATERIAL=HARD",
+        ]
     return lines
 
 
@@ -116,11 +120,26 @@ def native(across, approach, folder):
     pressed = [body.grid[i, body.rows - 1] for i in range(body.columns) if lines_reach(body, i)]
     deck += ["*SURFACE, NAME=SLAVE, TYPE=ELEMENT"] + [f"{e}, S3" for e in pressed]
     deck += ["*SURFACE, NAME=MASTER, TYPE=ELEMENT"] + [f"{plate.grid[i, 0]}, S1" for i in range(plate.columns)]
-    deck += ["*SURFACE INTERACTION, NAME=SI", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{1e5 * YOUNG}",
-             "*CONTACT PAIR, INTERACTION=SI, TYPE=SURFACE TO SURFACE", "SLAVE, MASTER", "*NSET, NSET=TOP"]
+    deck += [
+        "*SURFACE INTERACTION, NAME=SI",
+        "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
+        f"{1e5 * YOUNG}",
+        "*CONTACT PAIR, INTERACTION=SI, TYPE=SURFACE TO SURFACE",
+        "SLAVE, MASTER",
+        "*NSET, NSET=TOP",
+    ]
     deck += [f"{n}," for n in top]
-    deck += ["*STEP, INC=1000", "*STATIC", "0.25, 1.", "*BOUNDARY", "TOP, 1, 1, 0", f"TOP, 2, 2, {-approach:.15g}",
-             "*NODE PRINT, NSET=TOP, FREQUENCY=1000", "RF", "*END STEP"]
+    deck += [
+        "*STEP, INC=1000",
+        "*STATIC",
+        "0.25, 1.",
+        "*BOUNDARY",
+        "TOP, 1, 1, 0",
+        f"TOP, 2, 2, {-approach:.15g}",
+        "*NODE PRINT, NSET=TOP, FREQUENCY=1000",
+        "RF",
+        "*END STEP",
+    ]
     reactions = run(deck, folder)
     return -WEDGES * sum(reactions.values()), 2 * len(body.nodes)
 
@@ -145,8 +164,10 @@ def nodal(across, approach, folder):
         (folder / "deck.inp").write_text("\n".join(deck) + "\n")
         subprocess.run(["ccx", "-i", "deck"], cwd=folder, capture_output=True, text=True, check=False)
         blocks = (folder / "deck.dat").read_text().split("displacements")
-        reaction, u = [{int(r[0]): float(r[2]) for r in map(str.split, block.splitlines())
-                        if len(r) == 4 and r[0].isdigit()} for block in blocks]
+        reaction, u = [
+            {int(r[0]): float(r[2]) for r in map(str.split, block.splitlines()) if len(r) == 4 and r[0].isdigit()}
+            for block in blocks
+        ]
         # Corner and edge nodes of quadratic elements share a load unevenly: only the outermost ones are released.
         ordered = sorted(active, key=lambda n: body.nodes[n][0])
         pulled = [n for n in ordered[-3:] if reaction[n] > 0]

@@ -26,17 +26,47 @@ environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_R
 
 def solved(level, ranks, multigrid):
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run(["mpirun", "-np", ranks, choice.program, "cylinder", "--radius", "1", "--height", "3",
-                        "--young", "1", "--poisson", "0.25", "--strain", "0.01", "--dimension", "3",
-                        "--degree", choice.degree, "--refinements", level, "--multigrid", multigrid, "--no-fields",
-                        "--output", folder],
-                       check=True, env=environment, stdout=subprocess.DEVNULL)
+        subprocess.run(
+            [
+                "mpirun",
+                "-np",
+                ranks,
+                choice.program,
+                "cylinder",
+                "--radius",
+                "1",
+                "--height",
+                "3",
+                "--young",
+                "1",
+                "--poisson",
+                "0.25",
+                "--strain",
+                "0.01",
+                "--dimension",
+                "3",
+                "--degree",
+                choice.degree,
+                "--refinements",
+                level,
+                "--multigrid",
+                multigrid,
+                "--no-fields",
+                "--output",
+                folder,
+            ],
+            check=True,
+            env=environment,
+            stdout=subprocess.DEVNULL,
+        )
         return json.loads((pathlib.Path(folder) / "summary.json").read_text())["loads"][0]
 
 
 phases = ("assemble", "precondition", "solve")
-print("| multigrid | unknowns | ranks | iterations | assembly s | set-up s | solution s | processor s of these |"
-      " force |")
+print(
+    "| multigrid | unknowns | ranks | iterations | assembly s | set-up s | solution s | processor s of these |"
+    " force |"
+)
 print("| --- | ---: | ---: | ---: | ---: | ---: | ---: | --- | ---: |")
 ratios = []
 for name in choice.multigrid.split(","):
@@ -48,10 +78,15 @@ for name in choice.multigrid.split(","):
             alone = alone or best["seconds"]
             clock = " | ".join(f"{best[phase + '_seconds']:.2f}" for phase in phases)
             processor = ", ".join(f"{best[phase + '_cpu_seconds']:.2f}" for phase in phases)
-            print(f"| {name} | {best['n_unknowns']} | {ranks} | {best['cg_iterations']} | {clock} | {processor} | "
-                  f"{best['force']:.9g} |", flush=True)
+            print(
+                f"| {name} | {best['n_unknowns']} | {ranks} | {best['cg_iterations']} | {clock} | {processor} | "
+                f"{best['force']:.9g} |",
+                flush=True,
+            )
             if ranks != "1":
-                ratios.append(f"{name}, {best['n_unknowns']} unknowns: {ranks} ranks are "
-                              f"{alone / best['seconds']:.2f} times as fast as 1")
+                ratios.append(
+                    f"{name}, {best['n_unknowns']} unknowns: {ranks} ranks are "
+                    f"{alone / best['seconds']:.2f} times as fast as 1"
+                )
 print()
 print("\n".join(ratios))

@@ -11,9 +11,11 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 MARKS = {"Q1": "o", "Q2": "s", "Q3": "^", "CAX8": "D"}
-PANELS = (("sphere, ν = 0.25, a/R = 0.1", lambda name: name.startswith(("sphere nu=0.25", "CalculiX"))),
-          ("other spheres", lambda name: name.startswith("sphere") and "nu=0.25" not in name),
-          ("bonded cylinder, R = 7, h = 20", lambda name: name.startswith("bonded")))
+PANELS = (
+    ("sphere, ν = 0.25, a/R = 0.1", lambda name: name.startswith(("sphere nu=0.25", "CalculiX"))),
+    ("other spheres", lambda name: name.startswith("sphere") and "nu=0.25" not in name),
+    ("bonded cylinder, R = 7, h = 20", lambda name: name.startswith("bonded")),
+)
 
 
 def read(files):
@@ -24,7 +26,8 @@ def read(files):
             for row in csv.DictReader(stream):
                 if row["error_force"]:
                     curves.setdefault((row["problem"], row["element"]), []).append(
-                        (float(row["seconds"]), float(row["error_force"])))
+                        (float(row["seconds"]), float(row["error_force"]))
+                    )
     return curves
 
 
@@ -44,8 +47,15 @@ def main(picture, files):
                 if problem not in problems:
                     problems.append(problem)
                 line = "--" if problem.startswith("CalculiX") else "-"
-                axes.loglog(*zip(*points), line, marker=MARKS.get(element, "x"), markersize=4, lw=1.2,
-                            color=f"C{problems.index(problem)}", label=label_of(problem, element))
+                axes.loglog(
+                    *zip(*points),
+                    line,
+                    marker=MARKS.get(element, "x"),
+                    markersize=4,
+                    lw=1.2,
+                    color=f"C{problems.index(problem)}",
+                    label=label_of(problem, element),
+                )
         axes.set_title(title)
         axes.set_xlabel("seconds a load")
         axes.legend(fontsize=7, loc="lower right" if axes is panels[0] else "lower left")

@@ -24,9 +24,18 @@ ALLOWED_LOSS = 0.15
 def timed(program, repetitions):
     """Best rate of every benchmark over the repetitions, which are run in random order."""
     done = subprocess.run(
-        [program, f"--benchmark_filter={ENGINE}|" + "|".join(f"{name}$" for name in REFERENCE),
-         f"--benchmark_repetitions={repetitions}", "--benchmark_enable_random_interleaving=true",
-         "--benchmark_min_time=0.5", "--benchmark_format=json"], check=True, stdout=subprocess.PIPE, text=True)
+        [
+            program,
+            f"--benchmark_filter={ENGINE}|" + "|".join(f"{name}$" for name in REFERENCE),
+            f"--benchmark_repetitions={repetitions}",
+            "--benchmark_enable_random_interleaving=true",
+            "--benchmark_min_time=0.5",
+            "--benchmark_format=json",
+        ],
+        check=True,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
     best = {}
     for run in json.loads(done.stdout)["benchmarks"]:
         if run["run_type"] == "iteration":
@@ -60,9 +69,18 @@ def main():
     best = timed(choice.program, choice.repetitions)
     ratios = relative(best)
     if choice.write:
-        choice.write.write_text(json.dumps({"date": datetime.date.today().isoformat(), "processor": processor(),
-                                            "node_steps_per_second": best, "relative_to_reference": ratios},
-                                           indent=1) + "\n")
+        choice.write.write_text(
+            json.dumps(
+                {
+                    "date": datetime.date.today().isoformat(),
+                    "processor": processor(),
+                    "node_steps_per_second": best,
+                    "relative_to_reference": ratios,
+                },
+                indent=1,
+            )
+            + "\n"
+        )
         return 0
     worst = 0.0
     for name, before in record["relative_to_reference"].items():
@@ -70,8 +88,11 @@ def main():
         worst = max(worst, loss)
         print(f"{name}: {best[name] / 1e6:.1f} M node-steps/s, {-100 * loss:+.1f} % against the record")
     if worst > ALLOWED_LOSS:
-        print(f"a loss of {100 * worst:.0f} %, more than {100 * ALLOWED_LOSS:.0f} % "
-              f"(on record: {record['processor']}, {record['date']})", file=sys.stderr)
+        print(
+            f"a loss of {100 * worst:.0f} %, more than {100 * ALLOWED_LOSS:.0f} % "
+            f"(on record: {record['processor']}, {record['date']})",
+            file=sys.stderr,
+        )
         return 3
     return 0
 

@@ -21,8 +21,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-LATENCY = 2e-6      # s a message, a common InfiniBand fabric
-BANDWIDTH = 10e9    # bytes/s a rank
+LATENCY = 2e-6  # s a message, a common InfiniBand fabric
+BANDWIDTH = 10e9  # bytes/s a rank
 
 
 def step(model, count, cores_a_rank=1, split=False):
@@ -45,17 +45,26 @@ def main():
     model = json.load(open(sys.argv[1]))
     counts = {count["ranks"]: count for count in model["counted"]}
     rows = []
-    for cores, ranks, cores_a_rank, split in [(16, 16, 1, False), (128, 128, 1, False), (1024, 1024, 1, False), (1024, 128, 8, True)]:
+    for cores, ranks, cores_a_rank, split in [
+        (16, 16, 1, False),
+        (128, 128, 1, False),
+        (1024, 1024, 1, False),
+        (1024, 128, 8, True),
+    ]:
         parts = step(model, counts[ranks], cores_a_rank, split)
         rows.append((cores, ranks, cores_a_rank, split, parts))
     serial = model["grains"] * model["nodes_a_grain"] * model["seconds_a_node"]
-    print("| cores | ranks x threads | work, ms | halo, ms | sums, ms | list updates, ms | step, ms | efficiency | 6.4e7 steps, days |")
+    print(
+        "| cores | ranks x threads | work, ms | halo, ms | sums, ms | list updates, ms | step, ms | efficiency | 6.4e7 steps, days |"
+    )
     print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for cores, ranks, threads, split, parts in rows:
         total = sum(parts)
-        print(f"| {cores} | {ranks} x {threads}{' (split blocks)' if split else ''} | " +
-              " | ".join(f"{1e3 * part:.3g}" for part in parts) +
-              f" | {1e3 * total:.3g} | {100 * serial / total / cores:.0f} % | {6.4e7 * total / 86400:.3g} |")
+        print(
+            f"| {cores} | {ranks} x {threads}{' (split blocks)' if split else ''} | "
+            + " | ".join(f"{1e3 * part:.3g}" for part in parts)
+            + f" | {1e3 * total:.3g} | {100 * serial / total / cores:.0f} % | {6.4e7 * total / 86400:.3g} |"
+        )
     figure, axes = plt.subplots(figsize=(6.4, 4.2))
     ranks = sorted(counts)
     for label, index in (("work", 0), ("halo", 1), ("sums over grains", 2), ("list updates", 3)):

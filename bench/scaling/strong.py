@@ -44,8 +44,10 @@ def main() -> None:
         print(f"{name:8s} best {min(values):6.2f} ms a step, median {statistics.median(values):6.2f}")
     for name in ("2 ranks", "apart"):
         ratios = [one / two for one, two in zip(times["1 rank"], times[name])]
-        print(f"{name:8s} {min(times['1 rank']) / min(times[name]):.2f} times as fast (best against best), "
-              f"{statistics.median(ratios):.2f} (median of neighbours, {min(ratios):.2f} to {max(ratios):.2f})")
+        print(
+            f"{name:8s} {min(times['1 rank']) / min(times[name]):.2f} times as fast (best against best), "
+            f"{statistics.median(ratios):.2f} (median of neighbours, {min(ratios):.2f} to {max(ratios):.2f})"
+        )
 
 
 if __name__ == "__main__":

@@ -43,46 +43,88 @@ def plot_time_step(folder):
     figure, axes = plt.subplots(1, 2, figsize=(10, 4), constrained_layout=True)
     for gamma, colour in ((1.0, "C0"), (0.0, "C1")):
         for n, sign in ((60.0, "--"), (300.0, "-"), (5137.0, ":")):
-            axes[0].plot(*curve(grain, "alpha_kd", "linear_tau", nodes=n, gamma=gamma), sign, color=colour, lw=1,
-                         label=f"operator, {n:.0f} nodes, gamma = {gamma:.0f}")
-        axes[0].plot(*curve(grain, "alpha_kd", "experiment_tau", nodes=300.0, gamma=gamma), "o", color=colour, ms=4,
-                     label=f"experiment, 300 nodes, gamma = {gamma:.0f}")
+            axes[0].plot(
+                *curve(grain, "alpha_kd", "linear_tau", nodes=n, gamma=gamma),
+                sign,
+                color=colour,
+                lw=1,
+                label=f"operator, {n:.0f} nodes, gamma = {gamma:.0f}",
+            )
+        axes[0].plot(
+            *curve(grain, "alpha_kd", "experiment_tau", nodes=300.0, gamma=gamma),
+            "o",
+            color=colour,
+            ms=4,
+            label=f"experiment, 300 nodes, gamma = {gamma:.0f}",
+        )
     axes[0].axhline(0.1, color="k", lw=0.8)
     axes[0].set(xlabel="alpha (k d)", ylabel="largest stable dt (tau)", title="free grains", ylim=(0, None))
     axes[0].legend(fontsize=6)
     for k, alpha in enumerate(values(packing, "alpha_kd")):
         axes[1].plot(*curve(packing, "overlap_d", "linear_tau", alpha_kd=alpha, gamma=1.0), "-", color=f"C{k}", lw=1)
-        axes[1].plot(*curve(packing, "overlap_d", "experiment_tau", alpha_kd=alpha, gamma=1.0), "o", color=f"C{k}", ms=4,
-                     label=f"alpha = {alpha:g}")
+        axes[1].plot(
+            *curve(packing, "overlap_d", "experiment_tau", alpha_kd=alpha, gamma=1.0),
+            "o",
+            color=f"C{k}",
+            ms=4,
+            label=f"alpha = {alpha:g}",
+        )
     axes[1].plot(*curve(pair, "overlap_d", "pair_tau", gamma=1.0), "k--", lw=0.8, label="two nodes alone")
     axes[1].axhline(0.1, color="k", lw=0.8)
-    axes[1].set(xlabel="deepest overlap in the packing (d)", title="packings, damped: operator (lines), experiment", ylim=(0, 0.5))
+    axes[1].set(
+        xlabel="deepest overlap in the packing (d)",
+        title="packings, damped: operator (lines), experiment",
+        ylim=(0, 0.5),
+    )
     axes[1].legend(fontsize=6)
     return figure
 
 
 def plot_energy(folder):
-    alone, loops, spectrum, twin = (table(folder, name) for name in ("energy_left_alone", "energy_loops", "spectrum", "rounding_left_alone"))
+    alone, loops, spectrum, twin = (
+        table(folder, name) for name in ("energy_left_alone", "energy_loops", "spectrum", "rounding_left_alone")
+    )
     figure, axes = plt.subplots(1, 3 if spectrum else 2, figsize=(14 if spectrum else 10, 4), constrained_layout=True)
     shown = [a for a in values(alone, "alpha_kd") if a in (-0.8, 0.0, 2.0, 12.0)]
     for k, alpha in enumerate(shown):
         for precision, sign in (("double", "-"), ("mixed", ":")):
-            axes[0].semilogy(*curve(alone, "time_tau", "kinetic_kd2", alpha_kd=alpha, precision=precision), sign, color=f"C{k}", lw=1,
-                             label=f"alpha = {alpha:g}, {precision}")
+            axes[0].semilogy(
+                *curve(alone, "time_tau", "kinetic_kd2", alpha_kd=alpha, precision=precision),
+                sign,
+                color=f"C{k}",
+                lw=1,
+                label=f"alpha = {alpha:g}, {precision}",
+            )
         if values(twin, "alpha_kd") and alpha in values(twin, "alpha_kd"):
-            axes[0].semilogy(*curve(twin, "time_tau", "kinetic_kd2", alpha_kd=alpha), "--", color=f"C{k}", lw=1, label=f"alpha = {alpha:g}, long double")
+            axes[0].semilogy(
+                *curve(twin, "time_tau", "kinetic_kd2", alpha_kd=alpha),
+                "--",
+                color=f"C{k}",
+                lw=1,
+                label=f"alpha = {alpha:g}, long double",
+            )
     axes[0].set(xlabel="time (tau)", ylabel="kinetic energy (k d^2)", title="undamped grain of 100 nodes at rest")
     axes[0].legend(fontsize=6)
     if spectrum:
         for n in values(spectrum, "nodes"):
-            axes[1].plot(*curve(spectrum, "alpha_kd", "rate_per_tau", nodes=n), "o-", ms=3, lw=1, label=f"{n:.0f} nodes")
-        axes[1].set(xlabel="alpha (k d)", ylabel="growth rate without damping (1/tau)", title="spectrum of the linearised law")
+            axes[1].plot(
+                *curve(spectrum, "alpha_kd", "rate_per_tau", nodes=n), "o-", ms=3, lw=1, label=f"{n:.0f} nodes"
+            )
+        axes[1].set(
+            xlabel="alpha (k d)", ylabel="growth rate without damping (1/tau)", title="spectrum of the linearised law"
+        )
         axes[1].legend(fontsize=7)
     for k, alpha in enumerate([a for a in values(loops, "alpha_kd") if a in (-0.8, 0.0, 2.0, 5.0, 12.0)]):
         for sense, sign in ((1.0, "o-"), (-1.0, "s--")):
             x, y = curve(loops, "amplitude", "many_body_kd2", alpha_kd=alpha, gamma=1.0, sense=sense, period_tau=500.0)
-            axes[-1].loglog(x, np.abs(y), sign, color=f"C{k}", ms=3, lw=1, label=f"alpha = {alpha:g}" if sense > 0 else None)
-    axes[-1].set(xlabel="amplitude of the strain loop", ylabel="|work of the many-body force| (k d^2)", title="bulk, one closed loop, damped")
+            axes[-1].loglog(
+                x, np.abs(y), sign, color=f"C{k}", ms=3, lw=1, label=f"alpha = {alpha:g}" if sense > 0 else None
+            )
+    axes[-1].set(
+        xlabel="amplitude of the strain loop",
+        ylabel="|work of the many-body force| (k d^2)",
+        title="bulk, one closed loop, damped",
+    )
     axes[-1].legend(fontsize=7)
     return figure
 
@@ -92,9 +134,16 @@ def plot_rounding(folder):
     figure, axes = plt.subplots(1, 2, figsize=(10, 4), constrained_layout=True)
     for k, (alpha, gamma) in enumerate(sorted({(row["alpha_kd"], row["gamma"]) for row in growth})):
         for precision, sign in (("double", "-"), ("mixed", ":")):
-            axes[0].semilogy(*curve(growth, "time_tau", "distance_d", alpha_kd=alpha, gamma=gamma, precision=precision), sign, color=f"C{k}",
-                             lw=1, label=f"alpha = {alpha:g}, gamma = {gamma:.0f}, {precision}")
-    axes[0].set(xlabel="time (tau)", ylabel="distance from the long double twin (d)", title="error growth in a shaken packing")
+            axes[0].semilogy(
+                *curve(growth, "time_tau", "distance_d", alpha_kd=alpha, gamma=gamma, precision=precision),
+                sign,
+                color=f"C{k}",
+                lw=1,
+                label=f"alpha = {alpha:g}, gamma = {gamma:.0f}, {precision}",
+            )
+    axes[0].set(
+        xlabel="time (tau)", ylabel="distance from the long double twin (d)", title="error growth in a shaken packing"
+    )
     axes[0].legend(fontsize=6)
     for k, case in enumerate(sorted({(row["alpha_kd"], row["gamma"], row["precision"]) for row in momenta})):
         wanted = dict(zip(("alpha_kd", "gamma", "precision"), case))
@@ -137,7 +186,13 @@ def plot_contacts(folder):
     for axis, gamma, title in ((axes[0], 1.0, "damped, gamma = 1"), (axes[1], 0.0, "undamped")):
         for k, alpha in enumerate(values(packing, "alpha_kd")):
             axis.plot(*curve(packing, "overlap_d", "operator", alpha_kd=alpha, gamma=gamma), "-", color=f"C{k}", lw=1)
-            axis.plot(*curve(packing, "overlap_d", "experiment", alpha_kd=alpha, gamma=gamma), "o", color=f"C{k}", ms=4, label=f"alpha = {alpha:g}")
+            axis.plot(
+                *curve(packing, "overlap_d", "experiment", alpha_kd=alpha, gamma=gamma),
+                "o",
+                color=f"C{k}",
+                ms=4,
+                label=f"alpha = {alpha:g}",
+            )
         axis.axhline(0.6, color="k", lw=0.8, ls=":", label='dt = "auto"')
         axis.set(xlabel="deepest overlap (d)", title=title, ylim=(0, 1.1), xlim=(0, 0.5))
     axes[0].set(ylabel="largest stable dt / that of the bonds")

@@ -58,7 +58,9 @@ class Plan:
         self.long_strain = pick(2.0, 0.1)
         self.alphas = pick((2.0, -0.8), (2.0,))  # beside 0, where all axes are
         # All but the first make other paths of the same long run.
-        self.twin_steps = pick({2.0: [STEP - 0.001 * k for k in range(9)], -0.8: [STEP - 0.001 * k for k in range(4)]}, {2.0: [STEP]})
+        self.twin_steps = pick(
+            {2.0: [STEP - 0.001 * k for k in range(9)], -0.8: [STEP - 0.001 * k for k in range(4)]}, {2.0: [STEP]}
+        )
         self.alpha_steps = pick((0.02, 0.05, 0.1, 0.13, 0.16), (0.05, 0.1))
         self.points = pick((1000, 10_000, 100_000, 1_000_000), (1000, 10_000))
         self.reference_points = pick(10_000_000, 100_000)
@@ -75,10 +77,17 @@ class Plan:
 def packing(dt=STEP, precision="double", skin=SKIN, rate=RATE, strain=0.1, held=False, frames=False, alpha=0.0):
     """A shear of the packing, at constant volume or at the recorded run's pressure."""
     rate = HELD["rate"] if held else rate
-    name = f"packing-{precision}-dt{dt:g}-skin{skin:g}-rate{rate:g}-strain{strain:g}" + "-held" * held + "-frames" * frames
+    name = (
+        f"packing-{precision}-dt{dt:g}-skin{skin:g}-rate{rate:g}-strain{strain:g}" + "-held" * held + "-frames" * frames
+    )
     name += f"-alpha{alpha:g}" if alpha != 0.0 else ""
-    values = {"run.dt": dt, "run.precision": f'"{precision}"', "run.skin": skin, "stage.shear.rate": rate,
-              "stage.shear.strain": strain}
+    values = {
+        "run.dt": dt,
+        "run.precision": f'"{precision}"',
+        "run.skin": skin,
+        "stage.shear.rate": rate,
+        "stage.shear.strain": strain,
+    }
     if held:
         values |= {"stage.shear.pressure": HELD["pressure"], "stage.shear.gain": HELD["gain"]}
     if alpha != 0.0:
@@ -100,38 +109,67 @@ def press(dt=STEP, precision="double", velocity=1e-3, warm=False):
 def engine(name, scene, values, after=()):
     """A run of the engine on one thread."""
     settings = [word for key, value in values.items() for word in ("--set", f"{key}={value}")]
-    return Run(name, ("boba", "run", f"{{here}}/{scene}", *settings, "--threads", "1", "--quiet", "--output", "{out}"), after)
+    return Run(
+        name, ("boba", "run", f"{{here}}/{scene}", *settings, "--threads", "1", "--quiet", "--output", "{out}"), after
+    )
 
 
 def measured(name, *options):
     """Measures of the last frame of the packing that was stored."""
     frames = packing(frames=True).name
-    return Run(name, ("boba", "measure", f"{{{frames}}}", "--frame", "-1", "--threads", "1", *options, "--output", "{out}"),
-               (frames,))
+    return Run(
+        name,
+        ("boba", "measure", f"{{{frames}}}", "--frame", "-1", "--threads", "1", *options, "--output", "{out}"),
+        (frames,),
+    )
 
 
 def fraction(points, seed):
     """The packing fraction from so many random points."""
-    return measured(f"fraction-{points}-{seed}", "--what", "packing-fraction", "--points", str(points), "--seed", str(seed))
+    return measured(
+        f"fraction-{points}-{seed}", "--what", "packing-fraction", "--points", str(points), "--seed", str(seed)
+    )
 
 
 def facets(cosine, share):
     """Facets at one pair of thresholds."""
-    return measured(f"facets-{cosine:g}-{share:g}", "--what", "shape", "--min-cosine", str(cosine), "--min-area-share", str(share))
+    return measured(
+        f"facets-{cosine:g}-{share:g}", "--what", "shape", "--min-cosine", str(cosine), "--min-area-share", str(share)
+    )
 
 
 def table(nodes, seeds, tolerance=1e-5, warm=False):
     """E and nu of periodic boxes at alpha = 0 and 2; `warm` builds the boxes that the other reads."""
     name = f"table-{nodes}-{tolerance:g}" + "-warm" * warm
     after = () if warm else (f"table-{nodes}-1e-05-warm",)
-    return Run(name, ("boba-calibrate", "table", "--alpha", "0,2", "--nodes", str(nodes), "--seeds", str(seeds), "--seed", "101",
-                      "--tolerance", str(tolerance), "--output", "{out}"), after)
+    return Run(
+        name,
+        (
+            "boba-calibrate",
+            "table",
+            "--alpha",
+            "0,2",
+            "--nodes",
+            str(nodes),
+            "--seeds",
+            str(seeds),
+            "--seed",
+            "101",
+            "--tolerance",
+            str(tolerance),
+            "--output",
+            "{out}",
+        ),
+        after,
+    )
 
 
 def specimen(radii):
     """E and nu of cylinders cut from the bulk."""
-    return Run(f"specimen-{radii}", ("boba-calibrate", "specimen", "--alpha", "0", "--radius", radii, "--samples", "3",
-                                     "--output", "{out}"))
+    return Run(
+        f"specimen-{radii}",
+        ("boba-calibrate", "specimen", "--alpha", "0", "--radius", radii, "--samples", "3", "--output", "{out}"),
+    )
 
 
 def unique(runs):
@@ -152,10 +190,18 @@ def engine_runs(plan):
 
 def many_body_runs(plan):
     """Time step and precision with the many-body force."""
-    runs = [packing(dt, strain=plan.strain, alpha=alpha) for alpha in plan.alphas for dt in sorted(plan.alpha_steps, reverse=True)]
+    runs = [
+        packing(dt, strain=plan.strain, alpha=alpha)
+        for alpha in plan.alphas
+        for dt in sorted(plan.alpha_steps, reverse=True)
+    ]
     runs += [packing(precision="mixed", strain=plan.strain, alpha=alpha) for alpha in plan.alphas]
-    return runs + [packing(dt, precision, strain=plan.long_strain, alpha=alpha)
-                   for alpha in plan.alphas for dt in plan.twin_steps[alpha] for precision in ("double", "mixed")]
+    return runs + [
+        packing(dt, precision, strain=plan.long_strain, alpha=alpha)
+        for alpha in plan.alphas
+        for dt in plan.twin_steps[alpha]
+        for precision in ("double", "mixed")
+    ]
 
 
 def specimen_runs(plan):
@@ -181,4 +227,6 @@ def calibration_runs(plan):
 
 def all_runs(plan):
     """Everything, each run after those it needs."""
-    return unique(measure_runs(plan) + specimen_runs(plan) + engine_runs(plan) + many_body_runs(plan) + calibration_runs(plan))
+    return unique(
+        measure_runs(plan) + specimen_runs(plan) + engine_runs(plan) + many_body_runs(plan) + calibration_runs(plan)
+    )

@@ -17,9 +17,13 @@ from runner import Runner
 def arguments():
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("program", metavar="BOBA", type=pathlib.Path, help="the program boba; boba-calibrate lies beside it")
+    parser.add_argument(
+        "program", metavar="BOBA", type=pathlib.Path, help="the program boba; boba-calibrate lies beside it"
+    )
     parser.add_argument("--output", required=True, type=pathlib.Path, help="folder for runs, results.csv and pictures")
-    parser.add_argument("--quick", action="store_true", help="few and short runs: shows that it works, not what is true")
+    parser.add_argument(
+        "--quick", action="store_true", help="few and short runs: shows that it works, not what is true"
+    )
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time, each on one thread")
     parser.add_argument("--only-analyse", action="store_true", help="start nothing; use the runs that are there")
     return parser.parse_args()
@@ -36,7 +40,14 @@ def programs(boba):
 
 def describe_machine(boba, folder):
     """Writes machine.txt: processor, cores and the program's version."""
-    model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8") if line.startswith("model name")), "?")
+    model = next(
+        (
+            line.split(":")[1].strip()
+            for line in open("/proc/cpuinfo", encoding="utf-8")
+            if line.startswith("model name")
+        ),
+        "?",
+    )
     info = subprocess.run([boba, "info"], capture_output=True, text=True, check=True).stdout.splitlines()[:2]
     text = [model, f"{os.cpu_count()} cores, {platform.platform()}", *info]
     (folder / "machine.txt").write_text("\n".join(text) + "\n")
@@ -59,6 +70,7 @@ def main():
         runner.all(axes.all_runs(plan))
     import analysis
     import plots
+
     rows = analysis.evaluate(runner, plan)
     analysis.write(rows, options.output / "results.csv")
     plots.draw(rows, options.output)

@@ -29,10 +29,16 @@ def particles(file):
     c, s, side = x / r, y / r, np.sign(z)
     ux, uy = data["ux"] - data["ux"].mean(), data["uy"] - data["uy"].mean()
     stress = {name: data["w" + name] * DENSITY for name in ("xx", "yy", "zz", "yz", "xz", "xy")}
-    values = np.array([c * ux + s * uy, side * (data["uz"] - data["uz"].mean()),
-                       c * c * stress["xx"] + s * s * stress["yy"] + 2 * c * s * stress["xy"], stress["zz"],
-                       s * s * stress["xx"] + c * c * stress["yy"] - 2 * c * s * stress["xy"],
-                       side * (c * stress["xz"] + s * stress["yz"])])
+    values = np.array(
+        [
+            c * ux + s * uy,
+            side * (data["uz"] - data["uz"].mean()),
+            c * c * stress["xx"] + s * s * stress["yy"] + 2 * c * s * stress["xy"],
+            stress["zz"],
+            s * s * stress["xx"] + c * c * stress["yy"] - 2 * c * s * stress["xy"],
+            side * (c * stress["xz"] + s * stress["yz"]),
+        ]
+    )
     return np.column_stack([r, np.abs(z)]), values
 
 
@@ -51,7 +57,9 @@ def continuum(file, places):
     found = probe.GetOutput().GetPointData()
     inside = vtk_to_numpy(found.GetArray("vtkValidPointMask")).astype(bool)
     displacement = vtk_to_numpy(found.GetArray("displacement"))
-    values = np.array([displacement[:, 0], displacement[:, 1]] + [vtk_to_numpy(found.GetArray(n)) for n in NAMES[2:]], dtype=float)
+    values = np.array(
+        [displacement[:, 0], displacement[:, 1]] + [vtk_to_numpy(found.GetArray(n)) for n in NAMES[2:]], dtype=float
+    )
     values[:, ~inside] = np.nan
     return values
 
@@ -72,7 +80,9 @@ def picture(file, grid, ours, theirs):
     for axis, name, left, right in zip(axes.flat, NAMES, ours, theirs):
         limit = np.nanpercentile(np.abs(right), 98)
         for side, field in ((-1, left), (1, right)):
-            shown = axis.scatter(side * grid[:, 0], grid[:, 1], c=field, s=10, cmap="RdBu_r", vmin=-limit, vmax=limit, marker="s")
+            shown = axis.scatter(
+                side * grid[:, 0], grid[:, 1], c=field, s=10, cmap="RdBu_r", vmin=-limit, vmax=limit, marker="s"
+            )
         axis.set_title(f"{name}: particles | continuum", fontsize=9)
         axis.set_aspect("equal")
         axis.set_xlabel("r / d", fontsize=8)
@@ -96,7 +106,9 @@ def main(folder):
         theirs = continuum(files[-1], places)
         inside = np.isfinite(theirs[0])
         places, ours, theirs = places[inside], ours[:, inside], theirs[:, inside]
-        grid = np.array([(r, z) for r in np.arange(0.25, places[:, 0].max(), 0.5) for z in np.arange(0.25, places[:, 1].max(), 0.5)])
+        grid = np.array(
+            [(r, z) for r in np.arange(0.25, places[:, 0].max(), 0.5) for z in np.arange(0.25, places[:, 1].max(), 0.5)]
+        )
         grid = grid[[np.min(((places - point) ** 2).sum(axis=1)) < 0.5 for point in grid]]
         left, right = smoothed(places, ours, grid), smoothed(places, theirs, grid)
         weight = grid[:, 0]  # volume around the axis
@@ -104,13 +116,19 @@ def main(folder):
         for name, a, b in zip(NAMES, left, right):
             good = np.isfinite(a) & np.isfinite(b)
             scale = np.sqrt(np.average(b[good] ** 2, weights=weight[good]))
-            entry[name] = {"rms_difference": float(np.sqrt(np.average((a[good] - b[good]) ** 2, weights=weight[good]))),
-                           "rms_continuum": float(scale)}
+            entry[name] = {
+                "rms_difference": float(np.sqrt(np.average((a[good] - b[good]) ** 2, weights=weight[good]))),
+                "rms_continuum": float(scale),
+            }
         norms.append(entry)
         picture(folder / f"fields_{alpha}.png", grid, left, right)
-        print(f"fields, alpha = {alpha}: rms difference over rms of the continuum: " + ", ".join(
-            f"{name} {entry[name]['rms_difference'] / entry[name]['rms_continuum']:.3f}" for name in NAMES))
-    (folder / "fields.json").write_text(json.dumps({"schema": "boba-comparison-fields", "version": 1, "alphas": norms}, indent=1))
+        print(
+            f"fields, alpha = {alpha}: rms difference over rms of the continuum: "
+            + ", ".join(f"{name} {entry[name]['rms_difference'] / entry[name]['rms_continuum']:.3f}" for name in NAMES)
+        )
+    (folder / "fields.json").write_text(
+        json.dumps({"schema": "boba-comparison-fields", "version": 1, "alphas": norms}, indent=1)
+    )
 
 
 if __name__ == "__main__":

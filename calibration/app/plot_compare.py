@@ -9,8 +9,14 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-STYLE = {"linear": ("-", "0.5"), "finite": ("-.", "tab:orange"), "linear_layer": ("--", "tab:green"),
-         "finite_layer": ("-", "tab:red"), "neo_layer": (":", "tab:purple"), "linear_springs": (":", "0.5")}
+STYLE = {
+    "linear": ("-", "0.5"),
+    "finite": ("-.", "tab:orange"),
+    "linear_layer": ("--", "tab:green"),
+    "finite_layer": ("-", "tab:red"),
+    "neo_layer": (":", "tab:purple"),
+    "linear_springs": (":", "0.5"),
+}
 
 
 def curves(axis, rows, quantity, scale):
@@ -20,11 +26,19 @@ def curves(axis, rows, quantity, scale):
     for model, (line, colour) in STYLE.items():
         known = [row for row in points if model in row["continuum"]]
         if known:
-            axis.plot([row["load"] for row in known], [row["continuum"][model] * scale(row) for row in known], line,
-                      color=colour, lw=1.2, label=model.replace("_", " + "))
+            axis.plot(
+                [row["load"] for row in known],
+                [row["continuum"][model] * scale(row) for row in known],
+                line,
+                color=colour,
+                lw=1.2,
+                label=model.replace("_", " + "),
+            )
     if any("hertz" in row for row in points):
         axis.plot(load, [row["hertz"] * scale(row) for row in points], "k:", lw=1, label="Hertz")
-    axis.errorbar(load, [row["particles"] * scale(row) for row in points], yerr=error, fmt="ko", ms=4, label="particles")
+    axis.errorbar(
+        load, [row["particles"] * scale(row) for row in points], yerr=error, fmt="ko", ms=4, label="particles"
+    )
     axis.grid(alpha=0.3)
 
 

@@ -8,8 +8,12 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-RULES = {"young": "area by bonds", "young_by_density": "by number of nodes", "young_by_centres": "outermost centre",
-         "young_by_centres_plus_half": "outermost centre + d/2"}
+RULES = {
+    "young": "area by bonds",
+    "young_by_density": "by number of nodes",
+    "young_by_centres": "outermost centre",
+    "young_by_centres_plus_half": "outermost centre + d/2",
+}
 
 
 def main(table, picture):
@@ -18,7 +22,9 @@ def main(table, picture):
     radius = [float(row["radius_d"]) for row in rows]
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.6), constrained_layout=True)
     for name, label in RULES.items():
-        axes[0].plot(radius, [float(row[name]) / float(row["network_young"]) for row in rows], "o-", ms=4, lw=1, label=label)
+        axes[0].plot(
+            radius, [float(row[name]) / float(row["network_young"]) for row in rows], "o-", ms=4, lw=1, label=label
+        )
     axes[0].axhspan(0.97, 1.03, color="0.9", zorder=0)
     axes[0].set_ylabel("E / E of the network")
     axes[0].legend(fontsize=8)

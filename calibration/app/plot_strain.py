@@ -14,7 +14,11 @@ def main(table, picture):
         rows = list(csv.DictReader(file))
     strain = [float(row["strain"]) for row in rows]
     figure, axes = plt.subplots(1, 3, figsize=(12, 3.6), constrained_layout=True)
-    labels = {"stress_k_per_d": r"nominal stress $d/k$", "young_k_per_d": r"tangent $E\,d/k$", "poisson": r"incremental $\nu$"}
+    labels = {
+        "stress_k_per_d": r"nominal stress $d/k$",
+        "young_k_per_d": r"tangent $E\,d/k$",
+        "poisson": r"incremental $\nu$",
+    }
     for axis, (name, label) in zip(axes, labels.items()):
         axis.plot(strain, [float(row[name]) for row in rows], "o-", ms=3, lw=1)
         axis.set_xlabel("strain (tension positive)")

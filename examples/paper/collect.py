@@ -56,8 +56,15 @@ def is_done(run):
 def summary(run, spec):
     table = run.table
     nodes, seconds = log_numbers(run)
-    return [{"steps": int(table["step"][-1]), "nodes": nodes, "strain": round(float(table["strain"][-1]), 3),
-             "finished": int(is_done(run)), "seconds": int(seconds)}]
+    return [
+        {
+            "steps": int(table["step"][-1]),
+            "nodes": nodes,
+            "strain": round(float(table["strain"][-1]), 3),
+            "finished": int(is_done(run)),
+            "seconds": int(seconds),
+        }
+    ]
 
 
 def compaction(run, spec):
@@ -72,11 +79,16 @@ def compaction(run, spec):
         k = int(np.argmin(np.abs(np.log(np.maximum(pressure, 1e-12) / wanted))))
         if k not in used and abs(np.log(max(pressure[k], 1e-12) / wanted)) < 0.3 and k <= end:
             used.add(k)
-            rows.append({"P": f"{pressure[k]:.4g}", "phi": f"{measured['phi'][k]:.5f}",
-                         "phi_error": f"{measured['phi_error'][k]:.5f}",
-                         "phi_nodes": f"{measured['phi_nodes'][k]:.5f}",
-                         "phi_reference": f"{measured['phi_undeformed_hulls'][k]:.5f}",
-                         "ordered": f"{1 - not_ordered(order)[k]:.3f}"})
+            rows.append(
+                {
+                    "P": f"{pressure[k]:.4g}",
+                    "phi": f"{measured['phi'][k]:.5f}",
+                    "phi_error": f"{measured['phi_error'][k]:.5f}",
+                    "phi_nodes": f"{measured['phi_nodes'][k]:.5f}",
+                    "phi_reference": f"{measured['phi_undeformed_hulls'][k]:.5f}",
+                    "ordered": f"{1 - not_ordered(order)[k]:.3f}",
+                }
+            )
     return rows
 
 
@@ -90,8 +102,13 @@ def jamming(run, spec):
     for stage in ended:
         last = np.flatnonzero(table["stage"] == stage)[-1]
         k = np.flatnonzero(measured["step"] <= table["step"][last])[-1]
-        rows.append({"P": f"{table['P_normalised'][last]:.4g}", "phi": f"{measured['phi'][k]:.5f}",
-                     "phi_error": f"{measured['phi_error'][k]:.5f}"})
+        rows.append(
+            {
+                "P": f"{table['P_normalised'][last]:.4g}",
+                "phi": f"{measured['phi'][k]:.5f}",
+                "phi_error": f"{measured['phi_error'][k]:.5f}",
+            }
+        )
     return rows
 
 
@@ -114,8 +131,10 @@ def scattering(run, spec):
         chosen = [(w, k) for w, k in chosen if abs(strains[k] - w) < 0.2]
     for label, k in chosen:
         frame = run.rows("scattering", steps[k])
-        rows += [{"kind": kind, "value": label, "q": f"{q:.4f}", "form_factor": f"{p:.5g}", "structure": f"{s:.5g}"}
-                 for q, p, s in zip(frame["q_1/d"], frame["form_factor"], frame["structure"])]
+        rows += [
+            {"kind": kind, "value": label, "q": f"{q:.4f}", "form_factor": f"{p:.5g}", "structure": f"{s:.5g}"}
+            for q, p, s in zip(frame["q_1/d"], frame["form_factor"], frame["structure"])
+        ]
     return rows
 
 
@@ -132,9 +151,15 @@ def series(run, spec):
     for b in np.unique(which):
         inside = begin + np.flatnonzero(which == b)
         mean = {name: table[name][inside].mean() for name in ("strain", "mu", "P_normalised", "phi_reference")}
-        rows.append({"strain": f"{mean['strain']:.3f}", "mu": f"{mean['mu']:.4f}",
-                     "mu_deviation": f"{table['mu'][inside].std():.4f}", "P": f"{mean['P_normalised']:.5g}",
-                     "phi_reference": f"{mean['phi_reference']:.4f}"})
+        rows.append(
+            {
+                "strain": f"{mean['strain']:.3f}",
+                "mu": f"{mean['mu']:.4f}",
+                "mu_deviation": f"{table['mu'][inside].std():.4f}",
+                "P": f"{mean['P_normalised']:.5g}",
+                "phi_reference": f"{mean['phi_reference']:.4f}",
+            }
+        )
     return rows
 
 
@@ -146,12 +171,18 @@ def early(run, spec):
         return []
     mu, mu_error = run.average("mu", 1.0, last)
     inside = (table["strain"] > 1.0) & (table["strain"] < last)
-    row = {"to_strain": f"{last:.2f}", "mu": f"{mu:.4f}", "mu_error": f"{mu_error:.4f}",
-           "mu_deviation": f"{table['mu'][inside].std():.4f}",
-           "inertial_number": f"{table['inertial_number'][inside].mean():.4g}",
-           "P": f"{table['P_normalised'][inside].mean():.5g}",
-           "phi_reference": f"{table['phi_reference'][inside].mean():.4f}", "phi": "", "phi_error": "",
-           "phi_start": ""}
+    row = {
+        "to_strain": f"{last:.2f}",
+        "mu": f"{mu:.4f}",
+        "mu_error": f"{mu_error:.4f}",
+        "mu_deviation": f"{table['mu'][inside].std():.4f}",
+        "inertial_number": f"{table['inertial_number'][inside].mean():.4g}",
+        "P": f"{table['P_normalised'][inside].mean():.5g}",
+        "phi_reference": f"{table['phi_reference'][inside].mean():.4f}",
+        "phi": "",
+        "phi_error": "",
+        "phi_start": "",
+    }
     if spec["scene"] == "spheres":  # phi_reference is their packing fraction
         row["phi_start"] = f"{table['phi_reference'][start_of_shear(table)]:.4f}"
     if "packing_fraction" in run.measures:
@@ -166,9 +197,21 @@ def early(run, spec):
 
 
 #: Columns of the table of order that runs have which were measured before there were templates and clusters have not.
-NEW_ORDER = ("unknown_share", "template_fcc_share", "template_hcp_share", "template_bcc_share", "template_unknown_share",
-             "template_rmsd_mean", "solid_share", "largest_cluster", "largest_percolates_x", "largest_percolates_y",
-             "largest_percolates_z", "largest_finite_cluster", "bragg_peak")
+NEW_ORDER = (
+    "unknown_share",
+    "template_fcc_share",
+    "template_hcp_share",
+    "template_bcc_share",
+    "template_unknown_share",
+    "template_rmsd_mean",
+    "solid_share",
+    "largest_cluster",
+    "largest_percolates_x",
+    "largest_percolates_y",
+    "largest_percolates_z",
+    "largest_finite_cluster",
+    "bragg_peak",
+)
 
 
 def structure(run, spec):
@@ -187,8 +230,17 @@ def structure(run, spec):
         row["disordered"] = f"{not_ordered(order)[k]:.3f}"
         row |= {name: f"{order[name][k]:.4f}" for name in ("q6_mean", "averaged_q6_mean")}
         row |= {name: f"{order[name][k]:.4g}" for name in NEW_ORDER if name in order}
-        names = ("volume_mean_d3", "volume_deviation_d3", "asphericity_mean", "asphericity_deviation", "facets_mean",
-                 "twelve_facets_share", "faceted_share", "facets_transitive_mean", "faceted_share_transitive")
+        names = (
+            "volume_mean_d3",
+            "volume_deviation_d3",
+            "asphericity_mean",
+            "asphericity_deviation",
+            "facets_mean",
+            "twelve_facets_share",
+            "faceted_share",
+            "facets_transitive_mean",
+            "faceted_share_transitive",
+        )
         here = np.flatnonzero(shape["step"] == step) if shape else []
         row |= {name: f"{shape[name][here[0]]:.5g}" if len(here) else "" for name in names}
         here = np.flatnonzero(phi["step"] == step) if phi else []
@@ -209,17 +261,22 @@ def distributions(run, spec):
         return []
     grains, shape = run.measure("grains"), run.measure("shape")
     volume = shape["undeformed_volume_d3"][0]
-    bins = {"volume": (grains["volume_d3"] / volume, np.arange(0.4, 1.6001, 0.02)),
-            "asphericity": (grains["asphericity"], np.arange(1.0, 1.6001, 0.01)),
-            "facets": (grains["facets"], np.arange(-0.5, 80.6)),
-            "facets_transitive": (grains["facets_transitive"], np.arange(-0.5, 80.6))}
+    bins = {
+        "volume": (grains["volume_d3"] / volume, np.arange(0.4, 1.6001, 0.02)),
+        "asphericity": (grains["asphericity"], np.arange(1.0, 1.6001, 0.01)),
+        "facets": (grains["facets"], np.arange(-0.5, 80.6)),
+        "facets_transitive": (grains["facets_transitive"], np.arange(-0.5, 80.6)),
+    }
     rows = []
     for window, low, high in windows(float(run.table["strain"][-1])):
         inside = (grains["strain"] > low) & (grains["strain"] < high)
         for name, (values, edges) in bins.items():
             counts = np.histogram(values[inside], edges)[0]
-            rows += [{"window": window, "quantity": name, "centre": f"{0.5 * (a + b):.3f}", "count": int(n)}
-                     for a, b, n in zip(edges[:-1], edges[1:], counts) if n]
+            rows += [
+                {"window": window, "quantity": name, "centre": f"{0.5 * (a + b):.3f}", "count": int(n)}
+                for a, b, n in zip(edges[:-1], edges[1:], counts)
+                if n
+            ]
     return rows
 
 
@@ -229,8 +286,10 @@ def traces(run, spec):
         return []
     grains = run.measure("grains")
     chosen = (grains["grain"] == grains["grain"].min()) & (grains["strain"] > 0)
-    return [{"strain": f"{s:.2f}", "volume_d3": f"{v:.2f}", "asphericity": f"{a:.4f}"}
-            for s, v, a in zip(grains["strain"][chosen], grains["volume_d3"][chosen], grains["asphericity"][chosen])]
+    return [
+        {"strain": f"{s:.2f}", "volume_d3": f"{v:.2f}", "asphericity": f"{a:.4f}"}
+        for s, v, a in zip(grains["strain"][chosen], grains["volume_d3"][chosen], grains["asphericity"][chosen])
+    ]
 
 
 def rest(run, spec):
@@ -249,19 +308,34 @@ def rest(run, spec):
     n = int(spec["grains"])
     volume = table["Lx_d"] * table["Ly_d"] * table["Lz_d"] / n
     pressure = table["P_k/d"]
-    work = -float(np.sum(0.5 * (pressure[1: k + 1] + pressure[:k]) * np.diff(volume[: k + 1])))
+    work = -float(np.sum(0.5 * (pressure[1 : k + 1] + pressure[:k]) * np.diff(volume[: k + 1])))
     o = int(np.argmin(np.abs(order["step"] - table["step"][k])))
-    row = {"arrangement": spec["arrangement"], "P": f"{table['P_normalised'][k]:.5g}", "pressure": f"{pressure[k]:.6g}",
-           "volume": f"{volume[k]:.5f}", "phi_reference": f"{table['phi_reference'][k]:.5f}",
-           "energy": f"{table['elastic_energy_kd2'][k] / n:.6g}", "work": f"{work:.6g}",
-           "enthalpy": f"{work + pressure[k] * volume[k]:.6g}",
-           "kinetic": f"{table['kinetic_energy_kd2'][k] / n:.3g}"}
+    row = {
+        "arrangement": spec["arrangement"],
+        "P": f"{table['P_normalised'][k]:.5g}",
+        "pressure": f"{pressure[k]:.6g}",
+        "volume": f"{volume[k]:.5f}",
+        "phi_reference": f"{table['phi_reference'][k]:.5f}",
+        "energy": f"{table['elastic_energy_kd2'][k] / n:.6g}",
+        "work": f"{work:.6g}",
+        "enthalpy": f"{work + pressure[k] * volume[k]:.6g}",
+        "kinetic": f"{table['kinetic_energy_kd2'][k] / n:.3g}",
+    }
     return [row | {name: f"{order[name][o]:.4g}" for name in NEW_ORDER + ("template_shear_mean",)}]
 
 
-TABLES = {"summary": summary, "compaction": compaction, "jamming": jamming, "scattering": scattering, "series": series, "early": early,
-          "structure": structure, "distributions": distributions, "traces": traces,
-          "rest": rest}
+TABLES = {
+    "summary": summary,
+    "compaction": compaction,
+    "jamming": jamming,
+    "scattering": scattering,
+    "series": series,
+    "early": early,
+    "structure": structure,
+    "distributions": distributions,
+    "traces": traces,
+    "rest": rest,
+}
 
 
 def peer(out, results):
@@ -273,9 +347,18 @@ def peer(out, results):
         mu, error = boba.blocked_mean(table["mu"][inside])
         pressure = table["P_k/d"][inside].mean()
         rate = float(path.stem.removeprefix("yade_r"))
-        rows.append({"rate": f"{rate:g}", "inertial_number": f"{rate * np.sqrt(6.0 / np.pi / pressure):.4g}",
-                     "to_strain": f"{table['strain'][-1]:.2f}", "P": f"{pressure:.4g}", "mu": f"{mu:.4f}", "mu_error": f"{error:.4f}",
-                     "phi": f"{table['phi'][inside].mean():.4f}", "phi_start": f"{table['phi_at_rest'][0]:.4f}"})
+        rows.append(
+            {
+                "rate": f"{rate:g}",
+                "inertial_number": f"{rate * np.sqrt(6.0 / np.pi / pressure):.4g}",
+                "to_strain": f"{table['strain'][-1]:.2f}",
+                "P": f"{pressure:.4g}",
+                "mu": f"{mu:.4f}",
+                "mu_error": f"{error:.4f}",
+                "phi": f"{table['phi'][inside].mean():.4f}",
+                "phi_start": f"{table['phi_at_rest'][0]:.4f}",
+            }
+        )
     if rows:
         write(results / "yade.csv", rows)
 

@@ -14,7 +14,12 @@ from matplotlib.ticker import LogLocator, NullFormatter
 POISSON = {"-0.8": 0.4, "0": 0.25, "2": 0.0, "5": -0.25, "12": -0.5}
 COLOURS = {"-0.8": "#1b6ca8", "0": "#2a9d8f", "2": "#7a9e2e", "5": "#d98e04", "12": "#c1121f"}
 SPHERE_RADIUS = 10.0
-GRAIN_KINDS = (("300", ""), ("300", "wall"), ("5137", ""), ("5137", "wall"))  # nodes of a grain, surface of its template
+GRAIN_KINDS = (
+    ("300", ""),
+    ("300", "wall"),
+    ("5137", ""),
+    ("5137", "wall"),
+)  # nodes of a grain, surface of its template
 
 
 class Results:
@@ -25,8 +30,11 @@ class Results:
         self.tables = {path.stem: list(csv.DictReader(path.open())) for path in pathlib.Path(folder).glob("*.csv")}
 
     def rows(self, table, name, **equal):
-        return [row for row in self.tables.get(table, []) if row["name"] == name and
-                all(row[key] == value for key, value in equal.items())]
+        return [
+            row
+            for row in self.tables.get(table, [])
+            if row["name"] == name and all(row[key] == value for key, value in equal.items())
+        ]
 
     def columns(self, table, name, *names, **equal):
         rows = [row for row in self.rows(table, name, **equal) if all(row[column] != "" for column in names)]
@@ -47,7 +55,11 @@ class Results:
 
     def longest(self, alpha, nodes="300", surface=""):
         """Of one alpha's runs the one with the largest strain, of several the one with the most grains; None when there is none."""
-        names = [name for name in self.runs(scene="shear", alpha=alpha, nodes=nodes, surface=surface) if self.rows("structure", name)]
+        names = [
+            name
+            for name in self.runs(scene="shear", alpha=alpha, nodes=nodes, surface=surface)
+            if self.rows("structure", name)
+        ]
         return max(names, key=lambda name: (round(self.reached(name)), int(self.plan[name]["grains"])), default=None)
 
 
@@ -59,7 +71,9 @@ def mean_of_runs(values, error):
 
 def main_size(results):
     """Number of grains that most runs of early shear at 300 nodes have; None when there is no run."""
-    numbers = [results.plan[name]["grains"] for name in results.runs(scene="shear", nodes=300) if results.rows("early", name)]
+    numbers = [
+        results.plan[name]["grains"] for name in results.runs(scene="shear", nodes=300) if results.rows("early", name)
+    ]
     return max(numbers, key=lambda number: (numbers.count(number), int(number)), default=None)
 
 
@@ -130,8 +144,10 @@ def strain_curves(results):
         for nodes in ("5137", "300"):
             name = results.longest(alpha, nodes)
             if name and results.rows("scattering", name, value="3.2"):
-                chosen += [(name, "0.0", COLOURS[alpha], "--", None),
-                           (name, "3.2", COLOURS[alpha], "-", f"{label(alpha)}, {nodes} nodes")]
+                chosen += [
+                    (name, "0.0", COLOURS[alpha], "--", None),
+                    (name, "3.2", COLOURS[alpha], "-", f"{label(alpha)}, {nodes} nodes"),
+                ]
                 break
     return chosen
 
@@ -195,8 +211,11 @@ def figure_3(results, folder):
             continue
         colour = COLOURS[alpha]
         for row, (mean, deviation, trace) in enumerate(
-                (("volume_mean_d3", "volume_deviation_d3", "volume_d3"),
-                 ("asphericity_mean", "asphericity_deviation", "asphericity"))):
+            (
+                ("volume_mean_d3", "volume_deviation_d3", "volume_d3"),
+                ("asphericity_mean", "asphericity_deviation", "asphericity"),
+            )
+        ):
             strain, m, s = results.columns("structure", name, "strain", mean, deviation)
             axes[row, 0].fill_between(strain, m - s, m + s, color=colour, alpha=0.25, lw=0)
             axes[row, 0].plot(strain, m, color=colour, lw=1.3, label=label(alpha))
@@ -226,9 +245,11 @@ def window_mean(results, name, column, window):
 def figure_4(results, folder):
     """Facets: in early shear of the grains with the most nodes, cut and smooth; in the last fifth of the longest runs."""
     nodes = "5137" if any(results.longest(alpha, "5137") for alpha in POISSON) else "300"
-    sets = [(f"strain 2 to 4.5, {nodes} nodes", "early", -0.27, 0.4, "s", lambda alpha: results.longest(alpha, nodes)),
-            ("the same, smooth", "early", 0.0, 0.7, "^", lambda alpha: results.longest(alpha, nodes, "wall")),
-            ("last fifth, 300 nodes", "late", 0.27, 1.0, "o", results.longest)]
+    sets = [
+        (f"strain 2 to 4.5, {nodes} nodes", "early", -0.27, 0.4, "s", lambda alpha: results.longest(alpha, nodes)),
+        ("the same, smooth", "early", 0.0, 0.7, "^", lambda alpha: results.longest(alpha, nodes, "wall")),
+        ("last fifth, 300 nodes", "late", 0.27, 1.0, "o", results.longest),
+    ]
     figure = plt.figure(figsize=(10, 7))
     grid = figure.add_gridspec(5, 3, width_ratios=(1.1, 1.2, 1.2))
     shares, twelve = figure.add_subplot(grid[:2, 0]), figure.add_subplot(grid[3:, 0])
@@ -240,13 +261,22 @@ def figure_4(results, folder):
             share = window_mean(results, name, "faceted_share", window)
             shares.bar(k + shift, share, 0.25, color="#4c956c", alpha=opacity)
             shares.bar(k + shift, 1 - share, 0.25, bottom=share, color="#8d6a9f", alpha=opacity)
-            twelve.plot(POISSON[alpha], window_mean(results, name, "twelve_facets_share", window), marker,
-                        color=COLOURS[alpha], mfc="white" if marker == "s" else None)
+            twelve.plot(
+                POISSON[alpha],
+                window_mean(results, name, "twelve_facets_share", window),
+                marker,
+                color=COLOURS[alpha],
+                mfc="white" if marker == "s" else None,
+            )
     shares.set_xticks(np.arange(5), [f"{POISSON[alpha]:g}" for alpha in COLOURS])
     shares.set_ylabel("share of the surface")
     shares.set_xlabel(r"$\nu$")
-    shares.set_title("(a) facets (green), curved (purple);\n" + "\n".join(
-        f"{shade}: {text}" for shade, (text, *_) in zip(("light", "middle", "full"), sets)), fontsize=8, loc="left")
+    shares.set_title(
+        "(a) facets (green), curved (purple);\n"
+        + "\n".join(f"{shade}: {text}" for shade, (text, *_) in zip(("light", "middle", "full"), sets)),
+        fontsize=8,
+        loc="left",
+    )
     twelve.set_xlabel(r"$\nu$")
     twelve.set_ylabel("grains with 12 facets")
     twelve.set_ylim(0, None)
@@ -278,12 +308,20 @@ def figure_4(results, folder):
 def figure_s2(results, folder):
     figure, axes = plt.subplots(figsize=(5.5, 3.8))
     for alpha, colour in COLOURS.items():
-        names = [n for n in results.runs(scene="shear", alpha=alpha, nodes=300, seed=1, remap="positions")
-                 if results.rows("early", n)]
+        names = [
+            n
+            for n in results.runs(scene="shear", alpha=alpha, nodes=300, seed=1, remap="positions")
+            if results.rows("early", n)
+        ]
         for name in sorted(names, key=lambda n: float(results.plan[n]["rate"]))[:1]:
             strain, mu = results.columns("series", name, "strain", "mu")
-            axes.plot(strain[strain < 5], mu[strain < 5], color=colour, lw=1,
-                      label=f"{label(alpha)}, rate {results.plan[name]['rate']}")
+            axes.plot(
+                strain[strain < 5],
+                mu[strain < 5],
+                color=colour,
+                lw=1,
+                label=f"{label(alpha)}, rate {results.plan[name]['rate']}",
+            )
     axes.set_ylabel(r"$\mu$")
     axes.set_xlabel(r"strain (300 nodes, $\tilde P$ = 0.1)")
     axes.legend(fontsize=7, ncols=3, loc="lower left", bbox_to_anchor=(0.0, 1.0), frameon=False)
@@ -294,12 +332,19 @@ def figure_s3(results, folder):
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8))
     size = main_size(results)
     for alpha, colour in COLOURS.items():
-        for nodes, grains, remap, surface, style in (("300", size, "positions", "", "o-"), ("300", size, "velocities", "", "x"),
-                                                     ("300", "256", "positions", "", "D"), ("300", "64", "positions", "wall", "v:"),
-                                                     ("5137", "16", "positions", "", "s"), ("5137", "64", "positions", "", "P"),
-                                                     ("5137", "64", "positions", "wall", "*")):
+        for nodes, grains, remap, surface, style in (
+            ("300", size, "positions", "", "o-"),
+            ("300", size, "velocities", "", "x"),
+            ("300", "256", "positions", "", "D"),
+            ("300", "64", "positions", "wall", "v:"),
+            ("5137", "16", "positions", "", "s"),
+            ("5137", "64", "positions", "", "P"),
+            ("5137", "64", "positions", "wall", "*"),
+        ):
             points = {}
-            for name in results.runs(scene="shear", alpha=alpha, nodes=nodes, grains=grains, remap=remap, surface=surface):
+            for name in results.runs(
+                scene="shear", alpha=alpha, nodes=nodes, grains=grains, remap=remap, surface=surface
+            ):
                 for row in results.rows("early", name):
                     points.setdefault(results.plan[name]["rate"], []).append(row)
             curve = []
@@ -315,7 +360,11 @@ def figure_s3(results, folder):
                 right.plot(number, phi, style, color=colour, ms=4, lw=1)
     left.set_ylabel(r"$\mu$ (1 < strain < 5)")
     right.set_ylabel(r"$\phi$")
-    left.set_title(f"300 nodes: circles {size} grains (crosses: remap velocities), diamonds 256, triangles smooth grains;\n5137 nodes: squares 16 grains, plus 64, stars 64 smooth ones", fontsize=8, loc="left")
+    left.set_title(
+        f"300 nodes: circles {size} grains (crosses: remap velocities), diamonds 256, triangles smooth grains;\n5137 nodes: squares 16 grains, plus 64, stars 64 smooth ones",
+        fontsize=8,
+        loc="left",
+    )
     for axes in (left, right):
         axes.set_xscale("log")
         axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
@@ -339,9 +388,16 @@ def figure_s4(results, folder):
         for name in results.runs(scene="shear", alpha=alpha, nodes=300, rate="2.048e-3"):
             grains, seed = results.plan[name]["grains"], results.plan[name]["seed"]
             shade = next(blacks) if grains == "256" else "#6a0dad" if grains == "1024" else colour
-            order_curve(results, axis, name, color=shade, lw={"27": 0.7, "1024": 2.0}.get(grains, 1.3),
-                        alpha=0.5 if grains == "64" and seed != "1" else 1.0, ls="--" if grains == "27" else "-",
-                        label=f"{grains} grains, seed {seed}{' (AVX-512)' if 'avx512' in name else ''}")
+            order_curve(
+                results,
+                axis,
+                name,
+                color=shade,
+                lw={"27": 0.7, "1024": 2.0}.get(grains, 1.3),
+                alpha=0.5 if grains == "64" and seed != "1" else 1.0,
+                ls="--" if grains == "27" else "-",
+                label=f"{grains} grains, seed {seed}{' (AVX-512)' if 'avx512' in name else ''}",
+            )
         axis.set_ylabel(f"{label(alpha)}\nordered share", fontsize=8)
         if axis.lines:
             axis.legend(fontsize=6, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, borderpad=0.1)
@@ -368,7 +424,17 @@ def reduction_figure(results, folder):
     save(figure, folder, "reduction")
 
 
-FIGURES = [compaction_figure, figure_2, figure_3, figure_4, figure_s1, figure_s2, figure_s3, figure_s4, reduction_figure]
+FIGURES = [
+    compaction_figure,
+    figure_2,
+    figure_3,
+    figure_4,
+    figure_s1,
+    figure_s2,
+    figure_s3,
+    figure_s4,
+    reduction_figure,
+]
 
 
 def main(results, plan, folder):

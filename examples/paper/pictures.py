@@ -23,10 +23,19 @@ from figures import POISSON
 
 def last_run(plan, out, alpha):
     """Of the runs of grains of 300 nodes beyond strain 20 the one with the most grains, of several the one sheared farthest."""
-    rows = [row for row in csv.DictReader(open(plan)) if row["scene"] == "shear" and row["alpha"] == alpha and
-            row["nodes"] == "300" and not row["surface"] and (pathlib.Path(out) / row["name"] / "trajectory.h5").exists()]
+    rows = [
+        row
+        for row in csv.DictReader(open(plan))
+        if row["scene"] == "shear"
+        and row["alpha"] == alpha
+        and row["nodes"] == "300"
+        and not row["surface"]
+        and (pathlib.Path(out) / row["name"] / "trajectory.h5").exists()
+    ]
     reached = {row["name"]: float(boba.open(f"{out}/{row['name']}").table["strain"][-1]) for row in rows}
-    best = max(rows, key=lambda row: (reached[row["name"]] > 20, int(row["grains"]), reached[row["name"]]), default=None)
+    best = max(
+        rows, key=lambda row: (reached[row["name"]] > 20, int(row["grains"]), reached[row["name"]]), default=None
+    )
     return best and boba.open(f"{out}/{best['name']}")
 
 
@@ -46,14 +55,19 @@ def main(plan, out, path):
         picture = f"{folder}/picture.png"
         middle = "2" if last_run(plan, out, "2") else "0"
         for row, alpha in zip(axes, ("-0.8", middle, "12")):
-            cylinder, run, early = boba.open(f"{out}/cylinder_a{alpha}"), last_run(plan, out, alpha), early_run(
-                plan, out, alpha)
+            cylinder, run, early = (
+                boba.open(f"{out}/cylinder_a{alpha}"),
+                last_run(plan, out, alpha),
+                early_run(plan, out, alpha),
+            )
             at_early, last = early.frames.at_strain(3.2), run.frames[-1]
-            draw = [(lambda: pictures.grains_picture(cylinder.frames[-1], picture, (1.0, 0.0, 0.25), 260), "squeezed"),
-                    (lambda: pictures.grains_picture(at_early, picture, width=420), f"strain {at_early.strain:.1f}"),
-                    (lambda: pictures.grains_picture(last, picture, width=420), f"strain {last.strain:.1f}"),
-                    (lambda: pictures.cross_section_picture(at_early, picture, width=420), "cross-section"),
-                    (lambda: pictures.hulls_picture(at_early, picture, (0,), 320), "hull")]
+            draw = [
+                (lambda: pictures.grains_picture(cylinder.frames[-1], picture, (1.0, 0.0, 0.25), 260), "squeezed"),
+                (lambda: pictures.grains_picture(at_early, picture, width=420), f"strain {at_early.strain:.1f}"),
+                (lambda: pictures.grains_picture(last, picture, width=420), f"strain {last.strain:.1f}"),
+                (lambda: pictures.cross_section_picture(at_early, picture, width=420), "cross-section"),
+                (lambda: pictures.hulls_picture(at_early, picture, (0,), 320), "hull"),
+            ]
             for axis, (make, title) in zip(row, draw):
                 make()
                 pixels = plt.imread(picture)

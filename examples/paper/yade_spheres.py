@@ -60,10 +60,15 @@ def main(rate, strain, path, seed):
     cloud.toSimulation(material=material)
     barostat = Barostat(0.0)
     O.engines = [
-        ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb()], allowBiggerThanPeriod=True),
-        InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_FrictMat_FrictMat_MindlinPhys(betan=0.5, betas=0.0)],
-                        [Law2_ScGeom_MindlinPhys_Mindlin()]),
-        NewtonIntegrator(damping=0.0), PyRunner(command="barostat.update()", iterPeriod=1),
+        ForceResetter(),
+        InsertionSortCollider([Bo1_Sphere_Aabb()], allowBiggerThanPeriod=True),
+        InteractionLoop(
+            [Ig2_Sphere_Sphere_ScGeom()],
+            [Ip2_FrictMat_FrictMat_MindlinPhys(betan=0.5, betas=0.0)],
+            [Law2_ScGeom_MindlinPhys_Mindlin()],
+        ),
+        NewtonIntegrator(damping=0.0),
+        PyRunner(command="barostat.update()", iterPeriod=1),
     ]
     O.dt = STEP
     barostat.update()
@@ -77,8 +82,12 @@ def main(rate, strain, path, seed):
         table.writerow(["strain", "P_k/d", "mu", "phi", "phi_at_rest", "kinetic_energy_kd2"])
         while (O.iter - start) * STEP * rate < strain:
             O.run(max(1, int(round(0.01 / (rate * STEP)))), wait=True)
-            table.writerow([f"{x:.9g}" for x in ((O.iter - start) * STEP * rate, barostat.P, barostat.mu, phi(), at_rest,
-                                                 barostat.kinetic)])
+            table.writerow(
+                [
+                    f"{x:.9g}"
+                    for x in ((O.iter - start) * STEP * rate, barostat.P, barostat.mu, phi(), at_rest, barostat.kinetic)
+                ]
+            )
             file.flush()
 
 

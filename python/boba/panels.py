@@ -70,8 +70,14 @@ def compaction(axes, runs):
             if slope > 0:
                 x = np.geomspace(pressure[good].min(), 1e-1, 200)
                 x = x[(x ** (2 / 3) - offset) / slope < phi[good].max()]
-                axes.plot(x, (x ** (2 / 3) - offset) / slope, "--", color=colour, lw=1,
-                          label=f"3/2 law, phi_c = {-offset / slope:.3f}")
+                axes.plot(
+                    x,
+                    (x ** (2 / 3) - offset) / slope,
+                    "--",
+                    color=colour,
+                    lw=1,
+                    label=f"3/2 law, phi_c = {-offset / slope:.3f}",
+                )
         _label(axes, "normalised pressure", name, "compaction")
     axes.set_xscale("log")
     axes.legend(fontsize=7)
@@ -82,8 +88,14 @@ def structure_factor(axes, runs):
     for k, (label, run) in enumerate(runs):
         for step, shade in zip(_chosen_steps(run, "scattering"), (1.0, 0.75, 0.5, 0.3)):
             rows = run.rows("scattering", step)
-            axes.plot(rows["q_1/d"], rows["structure"], lw=1, color=COLOURS[k % 6], alpha=shade,
-                      label=f"{label} {_when(run, 'scattering', step)}")
+            axes.plot(
+                rows["q_1/d"],
+                rows["structure"],
+                lw=1,
+                color=COLOURS[k % 6],
+                alpha=shade,
+                label=f"{label} {_when(run, 'scattering', step)}",
+            )
     _label(axes, "q (1/d)", "S(q)", "structure factor")
     axes.legend(fontsize=7)
 
@@ -93,8 +105,14 @@ def form_factor(axes, runs, radius=None):
     for k, (label, run) in enumerate(runs):
         for step, shade in zip(_chosen_steps(run, "scattering", 3), (1.0, 0.6, 0.35)):
             rows = run.rows("scattering", step)
-            axes.plot(rows["q_1/d"], rows["form_factor"], lw=1, color=COLOURS[k % 6], alpha=shade,
-                      label=f"{label} {_when(run, 'scattering', step)}")
+            axes.plot(
+                rows["q_1/d"],
+                rows["form_factor"],
+                lw=1,
+                color=COLOURS[k % 6],
+                alpha=shade,
+                label=f"{label} {_when(run, 'scattering', step)}",
+            )
         if radius is None and has(run, "shape"):
             volume = run.measure("shape")["undeformed_volume_d3"][0]
             radius = (3 * volume / (4 * np.pi)) ** (1 / 3) if np.isfinite(volume) else None
@@ -122,13 +140,27 @@ def density(axes, runs):
     """Packing fraction: of the undeformed grains' volumes, and the measured one where there is one."""
     for (label, run), colour in zip(runs, COLOURS):
         rows, column, name = _abscissa(run.table)
-        axes.plot(run.table[column][rows], run.table["phi_reference"][rows], "--", lw=0.8, color=colour,
-                  label=f"{label}: undeformed volumes")
+        axes.plot(
+            run.table[column][rows],
+            run.table["phi_reference"][rows],
+            "--",
+            lw=0.8,
+            color=colour,
+            label=f"{label}: undeformed volumes",
+        )
         if has(run, "packing_fraction"):
             phi = run.measure("packing_fraction")
             inside = phi["step"] >= run.table["step"][rows].min()
-            axes.errorbar(phi[column][inside], phi["phi"][inside], phi["phi_error"][inside], fmt="o-", ms=3, lw=1,
-                          color=colour, label=f"{label}: nodes and hulls")
+            axes.errorbar(
+                phi[column][inside],
+                phi["phi"][inside],
+                phi["phi_error"][inside],
+                fmt="o-",
+                ms=3,
+                lw=1,
+                color=colour,
+                label=f"{label}: nodes and hulls",
+            )
         _label(axes, name, "phi", "packing fraction")
     axes.legend(fontsize=7)
 
@@ -137,8 +169,13 @@ def pressure(axes, runs):
     for (label, run), colour in zip(runs, COLOURS):
         rows, column, name = _abscissa(run.table)
         known = np.isfinite(run.table["P_normalised"]).any()
-        axes.plot(run.table[column][rows], run.table["P_normalised" if known else "P_k/d"][rows], lw=0.8, color=colour,
-                  label=label)
+        axes.plot(
+            run.table[column][rows],
+            run.table["P_normalised" if known else "P_k/d"][rows],
+            lw=0.8,
+            color=colour,
+            label=label,
+        )
         _label(axes, name, "normalised pressure" if known else "P (k/d)", "pressure")
     axes.legend(fontsize=7)
 
@@ -174,8 +211,7 @@ def _distribution(axes, runs, column, bins=25):
         for step, style in zip(steps, (":", "-")):
             values = run.rows("grains", step)[column]
             counts, edges = np.histogram(values, bins=bins)
-            axes.stairs(counts, edges, color=colour, ls=style, lw=1.2,
-                        label=f"{label} {_when(run, 'grains', step)}")
+            axes.stairs(counts, edges, color=colour, ls=style, lw=1.2, label=f"{label} {_when(run, 'grains', step)}")
             if steps[0] == steps[-1]:
                 break
     axes.legend(fontsize=7)
@@ -216,8 +252,14 @@ def facet_counts(axes, runs):
         steps = _first_and_last(run, "grains")
         for step, style in zip(steps, (":", "-")):
             counts, edges = np.histogram(run.rows("grains", step)["facets"], bins=bins)
-            axes.stairs(counts / max(counts.sum(), 1), edges, color=colour, ls=style, lw=1.2,
-                        label=f"{label} {_when(run, 'grains', step)}")
+            axes.stairs(
+                counts / max(counts.sum(), 1),
+                edges,
+                color=colour,
+                ls=style,
+                lw=1.2,
+                label=f"{label} {_when(run, 'grains', step)}",
+            )
             if steps[0] == steps[-1]:
                 break
     axes.axvline(12, color="k", lw=0.5, ls="--")
@@ -232,11 +274,23 @@ def crystal_classes(axes, runs):
         # Tables written before there were templates hold the classes by bond order alone.
         prefix = "template_" if "template_fcc_share" in order else ""
         for lattice, style in (("fcc", "-"), ("hcp", "--"), ("bcc", ":")):
-            axes.plot(order[x][rows], order[f"{prefix}{lattice}_share"][rows], style, color=colour, lw=1,
-                      label=f"{label} {lattice}" + ("" if prefix else " (bond order)"))
+            axes.plot(
+                order[x][rows],
+                order[f"{prefix}{lattice}_share"][rows],
+                style,
+                color=colour,
+                lw=1,
+                label=f"{label} {lattice}" + ("" if prefix else " (bond order)"),
+            )
         if "solid_share" in order:
-            axes.plot(order[x][rows], order["solid_share"][rows], color=colour, lw=0.5, alpha=0.6,
-                      label=f"{label} 7 solid bonds")
+            axes.plot(
+                order[x][rows],
+                order["solid_share"][rows],
+                color=colour,
+                lw=0.5,
+                alpha=0.6,
+                label=f"{label} 7 solid bonds",
+            )
     axes.set_ylim(-0.02, 1.02)
     _label(axes, name, "share of grains", "crystals (template matching)")
     axes.legend(fontsize=7)
@@ -295,6 +349,7 @@ def rheology(axes, runs, window):
 
 def available(runs, window):
     """The panels whose data at least one run has, as (name, function of the axes)."""
+
     def with_tables(*names):
         return [(label, run) for label, run in runs if has(run, *names)]
 
@@ -304,7 +359,11 @@ def available(runs, window):
         if some:
             chosen.append((name, lambda axes: draw(axes, some)))
 
-    tables = [(label, run) for label, run in runs if (run.folder / "table.csv").exists() and len(run.table.get("strain", ())) > 0]
+    tables = [
+        (label, run)
+        for label, run in runs
+        if (run.folder / "table.csv").exists() and len(run.table.get("strain", ())) > 0
+    ]
     sheared = [(label, run) for label, run in tables if np.ptp(run.table["strain"]) > 0]
     compressed = [(label, run) for label, run in tables if np.ptp(run.table["phi_reference"]) > 0.02]
     offer("compaction", compaction, compressed)
@@ -320,12 +379,18 @@ def available(runs, window):
     offer("facet_shares", facet_shares, with_tables("shape"))
     offer("facet_counts", facet_counts, with_tables("grains"))
     offer("crystal_classes", crystal_classes, with_tables("order"))
-    offer("largest_clusters", largest_clusters,
-          [(label, run) for label, run in with_tables("order") if "largest_cluster" in run.measure("order")])
+    offer(
+        "largest_clusters",
+        largest_clusters,
+        [(label, run) for label, run in with_tables("order") if "largest_cluster" in run.measure("order")],
+    )
     offer("coordination", coordination, with_tables("coordination"))
     offer("non_affine", non_affine, with_tables("motion"))
-    inside = [(label, run) for label, run in sheared
-              if ((run.table["strain"] > window[0]) & (run.table["strain"] < window[1])).sum() > 1]
+    inside = [
+        (label, run)
+        for label, run in sheared
+        if ((run.table["strain"] > window[0]) & (run.table["strain"] < window[1])).sum() > 1
+    ]
     if inside:
         chosen.append(("rheology", lambda axes: rheology(axes, inside, window)))
     return chosen

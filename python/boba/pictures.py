@@ -9,8 +9,10 @@ from .render import Picture, view_axes
 
 def grain_colours(n):
     """One colour a grain: hues by the golden ratio, so that grains with neighbouring numbers differ."""
-    colours = [colorsys.hsv_to_rgb((0.58 + 0.618034 * k) % 1.0, (0.75, 0.5, 0.62)[k % 3], (0.95, 0.88, 0.75)[k // 3 % 3])
-               for k in range(n)]
+    colours = [
+        colorsys.hsv_to_rgb((0.58 + 0.618034 * k) % 1.0, (0.75, 0.5, 0.62)[k % 3], (0.95, 0.88, 0.75)[k // 3 % 3])
+        for k in range(n)
+    ]
     return 255 * np.array(colours)
 
 

@@ -13,10 +13,19 @@ SHEET_FORMATS = (".png", ".pdf", ".svg")
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="boba plot", description="Panels and pictures of one or several runs.")
     parser.add_argument("runs", nargs="+", help="output folders of runs; several are drawn together")
-    parser.add_argument("--output", help="folder of the pictures, or a PNG, PDF or SVG for the sheet of all panels alone "
-                        "(default: plots in the first run's folder, and the sheet as plot.png beside it)")
-    parser.add_argument("--window", nargs=2, type=float, default=(1.0, 5.0), metavar=("FIRST", "LAST"),
-                        help="strain window of averages (default: 1 5)")
+    parser.add_argument(
+        "--output",
+        help="folder of the pictures, or a PNG, PDF or SVG for the sheet of all panels alone "
+        "(default: plots in the first run's folder, and the sheet as plot.png beside it)",
+    )
+    parser.add_argument(
+        "--window",
+        nargs=2,
+        type=float,
+        default=(1.0, 5.0),
+        metavar=("FIRST", "LAST"),
+        help="strain window of averages (default: 1 5)",
+    )
     parser.add_argument("--labels", nargs="+", help="one a run (default: names of the folders)")
     parser.add_argument("--pictures", action="store_true", help="also draw the grains, a cross-section and hulls (VTK)")
     parser.add_argument("--frame", type=int, default=-1, help="frame of the pictures (default: the last)")
@@ -37,7 +46,7 @@ def draw_panels(runs, window, folder, sheet_path):
     rows = -(-len(chosen) // columns)
     sheet, grid = plt.subplots(rows, columns, figsize=(5.2 * columns, 3.8 * rows), squeeze=False)
     written = []
-    for axes in grid.flat[len(chosen):]:
+    for axes in grid.flat[len(chosen) :]:
         axes.axis("off")
     for (name, draw), axes in zip(chosen, grid.flat):
         draw(axes)
@@ -95,8 +104,10 @@ def check_frames(runs, number):
     """Pictures need a frame of every run: told before anything is drawn."""
     for _, run in runs:
         if not run.frames.path.exists():
-            raise FileNotFoundError(f"{run.folder} holds no trajectory.h5, which --pictures draws from: a run stores "
-                                    "frames when its scene has [output.trajectory]")
+            raise FileNotFoundError(
+                f"{run.folder} holds no trajectory.h5, which --pictures draws from: a run stores "
+                "frames when its scene has [output.trajectory]"
+            )
         n = len(run.frames)
         if not -n <= number < n:
             raise IndexError(f"--frame {number}: {run.frames.path} holds {n} frames")
@@ -107,8 +118,10 @@ def draw(chosen, runs):
     if output and output.suffix in SHEET_FORMATS and not output.is_dir():
         folder, sheet = None, output
     elif output and output.suffix and not output.is_dir():
-        raise ValueError(f"--output {output}: {output.suffix} is no format of a sheet; there are "
-                         f"{', '.join(SHEET_FORMATS)}, and folders")
+        raise ValueError(
+            f"--output {output}: {output.suffix} is no format of a sheet; there are "
+            f"{', '.join(SHEET_FORMATS)}, and folders"
+        )
     else:
         folder = output or runs[0][1].folder / "plots"
         sheet = (folder if output else runs[0][1].folder) / "plot.png"
@@ -117,7 +130,9 @@ def draw(chosen, runs):
     if chosen.pictures:
         written += draw_pictures(runs, chosen.frame, chosen.hulls, folder or sheet.parent)
     if not written:
-        print("boba plot: nothing to draw: no table.csv that varies and no measures (see boba measure)", file=sys.stderr)
+        print(
+            "boba plot: nothing to draw: no table.csv that varies and no measures (see boba measure)", file=sys.stderr
+        )
         return 1
     for path in written:
         print(path)

@@ -32,8 +32,11 @@ class Picture:
 
     def _project(self, points):
         seen = (np.asarray(points) - self.centre) @ self.axes.T
-        return (seen[:, 0] * self.scale + 0.5 * self.nx, 0.5 * self.ny - seen[:, 1] * self.scale,
-                seen[:, 2] * self.scale)
+        return (
+            seen[:, 0] * self.scale + 0.5 * self.nx,
+            0.5 * self.ny - seen[:, 1] * self.scale,
+            seen[:, 2] * self.scale,
+        )
 
     def _shade(self, normal):
         return 0.35 + 0.65 * np.clip(normal @ self.light, 0.0, 1.0)
@@ -84,7 +87,7 @@ class Picture:
             wc = ((x[b] - x[a]) * (j - y[a]) - (i - x[a]) * (y[b] - y[a])) / area
             wa = 1.0 - wb - wc
             depth = wa * z[a] + wb * z[b] + wc * z[c]
-            pixel = (j.astype(np.int64) * self.nx + i.astype(np.int64))
+            pixel = j.astype(np.int64) * self.nx + i.astype(np.int64)
             inside = (wa >= 0) & (wb >= 0) & (wc >= 0) & (depth > self.depth[pixel])
             normal = np.cross([x[b] - x[a], y[a] - y[b], z[b] - z[a]], [x[c] - x[a], y[a] - y[c], z[c] - z[a]])
             normal /= np.linalg.norm(normal)

@@ -49,9 +49,17 @@ def blocked_mean(values):
 
 
 # Fill values: what a reader sees of a frame that is not written yet (docs/formats.md).
-_GROWING = ("particles/all/position/step", "particles/all/position/time", "particles/all/box/edges/value",
-            "particles/all/box/boba_origin/value", "particles/all/position/value", "particles/all/image/value",
-            "observables/strain/value", "observables/grain_centre/value", "observables/grain_stress/value")
+_GROWING = (
+    "particles/all/position/step",
+    "particles/all/position/time",
+    "particles/all/box/edges/value",
+    "particles/all/box/boba_origin/value",
+    "particles/all/position/value",
+    "particles/all/image/value",
+    "observables/strain/value",
+    "observables/grain_centre/value",
+    "observables/grain_stress/value",
+)
 _IMAGE_NOT_WRITTEN = np.iinfo(np.int32).min
 
 

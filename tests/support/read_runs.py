@@ -22,8 +22,15 @@ def frames(path):
             return []  # killed before its first frame: MDAnalysis does not open a file without any
     universe = MDAnalysis.Universe.empty(n, trajectory=True, velocities=velocities)
     universe.load_new(path, format="H5MD", convert_units=False)
-    return [(frame.data["step"], frame.positions.copy(), frame.velocities.copy() if velocities else None, frame.dimensions.copy())
-            for frame in universe.trajectory]
+    return [
+        (
+            frame.data["step"],
+            frame.positions.copy(),
+            frame.velocities.copy() if velocities else None,
+            frame.dimensions.copy(),
+        )
+        for frame in universe.trajectory
+    ]
 
 
 how, whole, others = sys.argv[1], frames(sys.argv[2]), sys.argv[3:]

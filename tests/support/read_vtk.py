@@ -23,8 +23,10 @@ for step, frame in zip(steps, frames):
     data = reader.GetOutput()
     assert data.GetNumberOfPoints() == 5 and data.GetNumberOfVerts() == 5
     assert [data.GetCell(k).GetPointId(0) for k in range(5)] == list(i)
-    array = {data.GetPointData().GetArrayName(k): vtk_to_numpy(data.GetPointData().GetArray(k))
-             for k in range(data.GetPointData().GetNumberOfArrays())}
+    array = {
+        data.GetPointData().GetArrayName(k): vtk_to_numpy(data.GetPointData().GetArray(k))
+        for k in range(data.GetPointData().GetNumberOfArrays())
+    }
     assert list(array["grain"]) == [4, 4, 4, 9, 9] and list(array["species"]) == [1, 1, 1, 0, 0]
     assert list(array["id"]) == [11, 7, 3, 8, 2]
     assert np.array_equal(array["velocity"], np.stack([i, np.full(5, 0.1 * step), -i], axis=1))

@@ -11,7 +11,9 @@ def row_of(done):
     folder = os.path.dirname(done)
     alpha, seed, rate = re.search(r"alpha(.+)_seed(.+)_rate(.+)$", os.path.basename(folder)).groups()
     with open(os.path.join(folder, "table.csv")) as file:
-        rows = [{key: float(value) if value else float("nan") for key, value in row.items()} for row in csv.DictReader(file)]
+        rows = [
+            {key: float(value) if value else float("nan") for key, value in row.items()} for row in csv.DictReader(file)
+        ]
     last = rows[-1]["stage"]
     shear = [row for row in rows if row["stage"] == last]
     begin, end = shear[0]["strain"], shear[-1]["strain"]
@@ -20,8 +22,17 @@ def row_of(done):
     def mean(key):
         return sum(row[key] for row in late) / len(late)
 
-    return {"alpha_kd": alpha, "seed": seed, "rate_1/tau": rate, "strain": end, "mu": mean("mu"), "P_normalised": mean("P_normalised"),
-            "phi_reference": mean("phi_reference"), "inertial_number": mean("inertial_number"), "rows": len(late)}
+    return {
+        "alpha_kd": alpha,
+        "seed": seed,
+        "rate_1/tau": rate,
+        "strain": end,
+        "mu": mean("mu"),
+        "P_normalised": mean("P_normalised"),
+        "phi_reference": mean("phi_reference"),
+        "inertial_number": mean("inertial_number"),
+        "rows": len(late),
+    }
 
 
 def main():

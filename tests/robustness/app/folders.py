@@ -11,8 +11,12 @@ import unittest
 from boba_program import LONG, ProgramTest, main, table_without_speed
 
 MORE = [
-    "--set", "output.dump.every_time=30", "--set", "output.vtk.every_time=60",
-    "--set", 'measure=[{what = "shape, order", every_strain = 0.05}]',
+    "--set",
+    "output.dump.every_time=30",
+    "--set",
+    "output.vtk.every_time=60",
+    "--set",
+    'measure=[{what = "shape, order", every_strain = 0.05}]',
 ]
 
 
@@ -63,11 +67,17 @@ class Force(ProgramTest):
 
     def test_only_what_the_run_wrote_goes(self):
         self.assertEqual(self.boba("run", "scene.toml", "--output", "a", *MORE).returncode, 0)
-        kept = ["measures/notes.txt", "measures/contacts.csv", "vtk/my.vtp", "vtk/packing_x.vtp", "checkpoints/README",
-                "keep.txt"]
+        kept = [
+            "measures/notes.txt",
+            "measures/contacts.csv",
+            "vtk/my.vtp",
+            "vtk/packing_x.vtp",
+            "checkpoints/README",
+            "keep.txt",
+        ]
         for name in kept:
             (self.folder / "a" / name).write_text("mine")
-        stale = (self.folder / "a/vtk/packing_99999999.vtp")
+        stale = self.folder / "a/vtk/packing_99999999.vtp"
         stale.write_text("of a run")
         result = self.boba("run", "scene.toml", "--output", "a", "--force", "--set", "seed=8")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -90,11 +100,13 @@ class Force(ProgramTest):
         self.assertEqual(self.boba("run", "scene.toml", "--output", "b").returncode, 0)
         before = (self.folder / "b/trajectory.h5").read_bytes()
         (self.folder / "b/next.toml").write_text(
-            '[start]\ntrajectory = "trajectory.h5"\n[[stage]]\ntype = "hold"\ntime = 1.0\n')
+            '[start]\ntrajectory = "trajectory.h5"\n[[stage]]\ntype = "hold"\ntime = 1.0\n'
+        )
         self.assert_refused(self.boba("run", "b/next.toml", "--output", "b", "--force"), "b/trajectory.h5", "reads it")
         os.symlink("b/trajectory.h5", self.folder / "link.h5")
         (self.folder / "next.toml").write_text(
-            '[start]\ntrajectory = "link.h5"\n[[stage]]\ntype = "hold"\ntime = 1.0\n')
+            '[start]\ntrajectory = "link.h5"\n[[stage]]\ntype = "hold"\ntime = 1.0\n'
+        )
         self.assert_refused(self.boba("run", "next.toml", "--output", "b", "--force"), "b/trajectory.h5")
         self.assertEqual((self.folder / "b/trajectory.h5").read_bytes(), before)
 
@@ -143,13 +155,18 @@ class Gaps(ProgramTest):
                 text = (o / name).read_text()
                 self.assertIn(old, text)
                 (o / name).write_text(text.replace(old, new, 1))
+
             return change
 
         row = (self.folder / "stopped/table.csv").read_text().splitlines()[5]
         a_vtp = sorted((self.folder / "stopped/vtk").glob("*.vtp"))[0].name
         changes = {
-            "table.csv": [remove("table.csv"), cut("table.csv", 500), edit("table.csv", row, "x"),
-                          edit("table.csv", row, row.replace("0", "1", 1))],
+            "table.csv": [
+                remove("table.csv"),
+                cut("table.csv", 500),
+                edit("table.csv", row, "x"),
+                edit("table.csv", row, row.replace("0", "1", 1)),
+            ],
             "dump.lammpstrj": [remove("dump.lammpstrj"), cut("dump.lammpstrj", 3000)],
             "trajectory.h5": [remove("trajectory.h5"), cut("trajectory.h5", 4000)],
             "vtk": [remove("vtk"), remove(f"vtk/{a_vtp}"), cut(f"vtk/{a_vtp}", 100), remove("vtk/packing.pvd")],

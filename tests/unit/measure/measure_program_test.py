@@ -57,8 +57,14 @@ RATE, DT = 2e-3, 0.1
 
 
 def boba_program(folder, *arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=folder, capture_output=True, text=True, check=False,
-                          env={**os.environ, "BOBA_CACHE_DIR": str(folder / "cache")})
+    return subprocess.run(
+        [PROGRAM, *map(str, arguments)],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "BOBA_CACHE_DIR": str(folder / "cache")},
+    )
 
 
 class Program(unittest.TestCase):
@@ -110,7 +116,10 @@ class Program(unittest.TestCase):
             compared += 1
         self.assertGreater(compared, 6)
         np.testing.assert_allclose(anew["P_run_k/d"], run.measure("stress")["P_k/d"], rtol=1e-12, atol=1e-14)
-        grains, stored = boba.open(self.folder / "run", self.folder / "anew").rows("grain_stress", anew["step"][-1]), None
+        grains, stored = (
+            boba.open(self.folder / "run", self.folder / "anew").rows("grain_stress", anew["step"][-1]),
+            None,
+        )
         stored = run.rows("grain_stress", anew["step"][-1])
         for column in stored:
             np.testing.assert_allclose(grains[column], stored[column], atol=1e-8, err_msg=column)
@@ -153,10 +162,12 @@ class Program(unittest.TestCase):
         self.assertTrue((contacts["area_d2"] > 0.7).all())
 
     def test_mistakes_are_named_and_write_nothing(self):
-        for text, word in ((SCENE.replace("stress, shape", "stress, colour"), "colour"),
-                           (SCENE.replace("packing-fraction, motion", "shape"), "another"),
-                           (SCENE.replace("points = 20000", "points = 20000\nrelaxed = true"), "relaxed"),
-                           (SCENE.replace("fraction = 0.25", 'fraction = 0.25\narrangement = "fcc"'), "4 and 32")):
+        for text, word in (
+            (SCENE.replace("stress, shape", "stress, colour"), "colour"),
+            (SCENE.replace("packing-fraction, motion", "shape"), "another"),
+            (SCENE.replace("points = 20000", "points = 20000\nrelaxed = true"), "relaxed"),
+            (SCENE.replace("fraction = 0.25", 'fraction = 0.25\narrangement = "fcc"'), "4 and 32"),
+        ):
             (self.folder / "wrong.toml").write_text(text)
             refused = boba_program(self.folder, "run", "wrong.toml", "--output", "wrong")
             self.assertEqual(refused.returncode, 2)
@@ -175,15 +186,27 @@ class Program(unittest.TestCase):
             codes.append(boba_program(self.folder, "resume", "stopped").returncode)
         self.assertEqual(codes[-1], 0, codes)
         self.assertGreater(len(codes), 1, "the run was never stopped: give it less wall time")
-        for name in ("stress.csv", "grains.csv", "packing_fraction.csv", "contacts.csv", "motion.csv", "grain_motion.csv"):
-            self.assertEqual((self.folder / "stopped/measures" / name).read_text(),
-                             (self.folder / "run/measures" / name).read_text(), name)
+        for name in (
+            "stress.csv",
+            "grains.csv",
+            "packing_fraction.csv",
+            "contacts.csv",
+            "motion.csv",
+            "grain_motion.csv",
+        ):
+            self.assertEqual(
+                (self.folder / "stopped/measures" / name).read_text(),
+                (self.folder / "run/measures" / name).read_text(),
+                name,
+            )
 
     def test_order_of_rested_copies_leaves_the_run_as_it_was(self):
         dump = SCENE.replace("[output.trajectory]", "[output.dump]\nevery_strain = 0.1\n[output.trajectory]")
         plain = dump.replace(", order, contacts", ", contacts")
-        rested = plain.replace("[[template]]", '[[measure]]\nwhat = "order"\nrelaxed = true\nrest_time = 20\n'
-                               "every_strain = 0.05\n[[template]]")
+        rested = plain.replace(
+            "[[template]]",
+            '[[measure]]\nwhat = "order"\nrelaxed = true\nrest_time = 20\n' "every_strain = 0.05\n[[template]]",
+        )
         for name, scene in (("plain", plain), ("rested", rested)):
             (self.folder / f"{name}.toml").write_text(scene)
             done = boba_program(self.folder, "run", f"{name}.toml", "--output", name)
@@ -193,24 +216,36 @@ class Program(unittest.TestCase):
             if column != "speed_steps/s":
                 np.testing.assert_array_equal(tables[0][column], tables[1][column], column)
         for file in ("dump.lammpstrj", "measures/stress.csv", "measures/motion.csv"):
-            self.assertEqual((self.folder / "plain" / file).read_bytes(), (self.folder / "rested" / file).read_bytes(),
-                             file)
+            self.assertEqual(
+                (self.folder / "plain" / file).read_bytes(), (self.folder / "rested" / file).read_bytes(), file
+            )
         live = boba.open(self.folder / "rested").measure("order")
         flowing = boba.open(self.folder / "run").measure("order")
         self.assertEqual(set(live["rest_tau"]), {20.0})
         self.assertEqual(set(flowing["rest_tau"]), {0.0})
         self.assertGreater(abs(live["q6_mean"] - flowing["q6_mean"]).max(), 1e-4)
-        stored = boba_program(self.folder, "measure", "rested", "--output", "rested_again", "--what", "order",
-                              "--relaxed", "--rest-time", "20")
+        stored = boba_program(
+            self.folder,
+            "measure",
+            "rested",
+            "--output",
+            "rested_again",
+            "--what",
+            "order",
+            "--relaxed",
+            "--rest-time",
+            "20",
+        )
         self.assertEqual(stored.returncode, 0, stored.stderr)
         again = boba.open(self.folder / "rested", self.folder / "rested_again").measure("order")
         np.testing.assert_allclose(again["q6_mean"], live["q6_mean"], atol=1e-6)
 
     def test_a_crystal_is_one_at_the_start(self):
         for arrangement, count in (("fcc", 32), ("hcp", 48), ("bcc", 54)):
-            scene = (SCENE.replace("count = 12", f"count = {count}")
-                     .replace("fraction = 0.25", f'fraction = 0.25\narrangement = "{arrangement}"'))
-            scene = scene[:scene.index('[[stage]]\ntype = "compress"')] + '[[stage]]\ntype = "hold"\ntime = 1\n'
+            scene = SCENE.replace("count = 12", f"count = {count}").replace(
+                "fraction = 0.25", f'fraction = 0.25\narrangement = "{arrangement}"'
+            )
+            scene = scene[: scene.index('[[stage]]\ntype = "compress"')] + '[[stage]]\ntype = "hold"\ntime = 1\n'
             (self.folder / f"{arrangement}.toml").write_text(scene)
             done = boba_program(self.folder, "run", f"{arrangement}.toml", "--output", arrangement)
             self.assertEqual(done.returncode, 0, done.stderr)

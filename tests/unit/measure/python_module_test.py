@@ -24,14 +24,32 @@ def write_table(path, columns):
 
 def make_run(folder):
     strain = [0.01 * k for k in range(600)]
-    write_table(folder / "table.csv", {
-        "step": list(range(600)), "time_tau": [10.0 * k for k in range(600)], "strain": strain, "mu": [0.1 + 0.01 * (k % 2) for k in range(600)],
-        "phi_reference": [0.9] * 600, "P_normalised": [None] * 600, "P_k/d": [0.1] * 600,
-        "inertial_number": [1e-3] * 600})
+    write_table(
+        folder / "table.csv",
+        {
+            "step": list(range(600)),
+            "time_tau": [10.0 * k for k in range(600)],
+            "strain": strain,
+            "mu": [0.1 + 0.01 * (k % 2) for k in range(600)],
+            "phi_reference": [0.9] * 600,
+            "P_normalised": [None] * 600,
+            "P_k/d": [0.1] * 600,
+            "inertial_number": [1e-3] * 600,
+        },
+    )
     (folder / "measures").mkdir()
-    write_table(folder / "measures" / "grains.csv", {
-        "step": [0, 0, 7, 7], "time_tau": [0.0] * 4, "strain": [0.0, 0.0, 0.5, 0.5], "grain": [1, 2, 1, 2],
-        "volume_d3": [10.0, 11.0, 12.0, 13.0], "asphericity": [1.0, 1.1, 1.2, 1.3], "facets": [12, 11, 10, 12]})
+    write_table(
+        folder / "measures" / "grains.csv",
+        {
+            "step": [0, 0, 7, 7],
+            "time_tau": [0.0] * 4,
+            "strain": [0.0, 0.0, 0.5, 0.5],
+            "grain": [1, 2, 1, 2],
+            "volume_d3": [10.0, 11.0, 12.0, 13.0],
+            "asphericity": [1.0, 1.1, 1.2, 1.3],
+            "facets": [12, 11, 10, 12],
+        },
+    )
     box = np.array([[4.0, 1.0, -0.5], [0.0, 5.0, 2.0], [0.0, 0.0, 6.0]])
     origin = np.array([1.0, 2.0, 3.0])
     unwrapped = origin + np.random.default_rng(1).normal(size=(20, 3)) * 8
@@ -148,7 +166,10 @@ class Module(unittest.TestCase):
         self.assertEqual(plot.main([str(self.folder), "--pictures", "--hulls", "0", "1"]), 0)
         names = {path.stem for path in (self.folder / "plots").glob("*.png")}
         self.assertTrue((self.folder / "plot.png").exists())
-        self.assertLessEqual({"stress_ratio", "packing_fraction", "pressure", "volume_distribution", "rheology", "grains", "hulls"}, names)
+        self.assertLessEqual(
+            {"stress_ratio", "packing_fraction", "pressure", "volume_distribution", "rheology", "grains", "hulls"},
+            names,
+        )
         self.assertNotIn("crystal_classes", names)
         self.assertEqual(plot.main([str(self.folder / "nothing")]), 2)
 
