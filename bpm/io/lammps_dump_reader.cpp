@@ -224,10 +224,10 @@ void DumpReader::read_row(const Columns& columns, LammpsFrame& frame) const {
 }
 
 /// At the end of the file, or of a line that has no end and whose last number may lack digits, the frame was cut off.
-void DumpReader::fail_cut_off(const FrameHead& head, std::int64_t row) const {
+void DumpReader::fail_cut_off(const FrameHead& head, std::int64_t row, bool ends) const {
   const std::string what =
       fmt::format("the frame of step {} ends after {} of {} rows", head.frame.timestep, row, head.n_rows);
-  if (in_.line().starts_with("ITEM:")) {
+  if (!ends && in_.line().starts_with("ITEM:")) { // the next frame
     in_.fail(what);
   }
   in_.fail_cut_off(what);
@@ -240,8 +240,8 @@ LammpsFrame DumpReader::read_rows(FrameHead head) {
   frame.is_unwrapped =
       columns.kind == Kind::unwrapped || columns.kind == Kind::scaled_unwrapped || all_there(columns.image);
   for (std::int64_t row = 0; row < head.n_rows; ++row) {
-    if (!in_.next() || in_.line().starts_with("ITEM:") || !in_.has_line_end()) {
-      fail_cut_off(head, row);
+    if (const bool ends = !in_.next(); ends || in_.line().starts_with("ITEM:") || !in_.has_line_end()) {
+      fail_cut_off(head, row, ends);
     }
     read_row(columns, frame);
   }
@@ -253,8 +253,8 @@ LammpsFrame DumpReader::read_rows(FrameHead head) {
 
 void DumpReader::skip_rows(const FrameHead& head) {
   for (std::int64_t row = 0; row < head.n_rows; ++row) {
-    if (!in_.next() || in_.line().starts_with("ITEM:") || !in_.has_line_end()) {
-      fail_cut_off(head, row);
+    if (const bool ends = !in_.next(); ends || in_.line().starts_with("ITEM:") || !in_.has_line_end()) {
+      fail_cut_off(head, row, ends);
     }
     if (in_.fields().size() != head.columns.n) {
       in_.fail(fmt::format("{} columns; 'ITEM: ATOMS' names {}", in_.fields().size(), head.columns.n));

@@ -52,7 +52,7 @@ private:
   Vector3 vector_at(const std::array<int, 3>& columns, std::string_view name) const;
   void need_usable(const Vector3& x, std::string_view name) const;
   void check_units(const Columns& columns) const;
-  [[noreturn]] void fail_cut_off(const FrameHead& head, std::int64_t row) const;
+  [[noreturn]] void fail_cut_off(const FrameHead& head, std::int64_t row, bool ends) const;
 
   LineReader in_;
 };
