@@ -22,7 +22,7 @@ namespace {
 
 const std::array commands = {
     Command{"run", "run a scene", add_run_command},
-    Command{"resume", "go on with a run that was stopped or killed", add_resume_command},
+    Command{"resume", "continue a run that was stopped or killed", add_resume_command},
     Command{"check", "say what a scene would run, without running it", add_check_command},
     Command{"forces", "forces and pressure tensor of a LAMMPS data file of bonded grains", add_forces_command},
     Command{"measure", "measure the stored frames of a run", add_measure_command},

@@ -91,7 +91,7 @@ CommandBody add_measure_command(CLI::App& app) {
   app.add_option("--output", options.output, "folder of the tables (default: measures in the run's folder)");
   app.add_option("--threads", options.threads, "threads of a rank; 0 takes all cores")->check(CLI::Range(0, 1024));
   app.add_flag("--stored-stress", options.stored_stress,
-               "the stress that the run stored, instead of one from forces evaluated anew");
+               "the stress that the run stored, instead of one from forces evaluated again");
   app.add_flag("--force", options.force, "replace tables that are there");
   add_numbers(app, options.plan);
   app.footer("Tables and columns: docs/formats-measure.md.");

@@ -121,7 +121,7 @@ CommandBody add_resume_command(CLI::App& app) {
   app.add_option("--wall-time", a->wall_time, "stop with a checkpoint after so many seconds")
       ->check(positive_seconds());
   app.add_flag("--allow-other-isa", a->allow_other_isa,
-               "go on although the instruction set differs: no longer bit for bit");
+               "continue although the instruction set differs: no longer bit for bit");
   app.add_flag("--accept-gaps", a->accept_gaps, "continue although files of the run are missing, cut short or edited");
   app.add_flag("--quiet", a->quiet, "print nothing but errors");
   return [a] { return on_all_ranks([a](const Ranks& ranks) { return resume(*a, ranks); }); };

@@ -119,7 +119,7 @@ private:
       log_.say("gap accepted: " + gap);
     }
     const std::string begin = setup_.restart
-                                  ? fmt::format("going on at step {} from {}", simulation_.step(), setup_.restart->file)
+                                  ? fmt::format("continuing at step {} from {}", simulation_.step(), setup_.restart->file)
                                   : "starting";
     const std::string on_ranks = ranks_.is_distributed() ? fmt::format("{} ranks of ", ranks_.size()) : "";
     log_.say(fmt::format("{}: {} grains, {} nodes, {}{} threads, {} precision, {}; {}", setup_.scene.title,
@@ -167,7 +167,7 @@ private:
 
   ExitCode stop() {
     const std::filesystem::path file = write_checkpoint();
-    log_.say(fmt::format("stopped by {} at step {}; checkpoint {}; go on with: boba resume {}", stop_reason(),
+    log_.say(fmt::format("stopped by {} at step {}; checkpoint {}; continue with: boba resume {}", stop_reason(),
                          simulation_.step(), file.string(), setup_.folder.root().string()));
     return ExitCode::stopped;
   }

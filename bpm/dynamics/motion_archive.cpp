@@ -152,6 +152,8 @@ void save_motion(const MovingPacking& moving, SavedState& saved) {
   saved.real["next_streaming"] = flat(cell.next_streaming);
   saved.real["scalars"] = {cell.strain, moving.pressure, moving.kinetic_energy};
   saved.real["velocity_sum"] = {moving.noted_momentum.begin(), moving.noted_momentum.end()};
+  saved.real["momentum_along_gradient"] = {moving.momentum_along_gradient.begin(),
+                                           moving.momentum_along_gradient.end()};
   saved.integer["step"] = {moving.step};
   saved.integer["started"] = {moving.started ? 1 : 0, moving.forces_kept ? 1 : 0};
   save_ends(moving, saved);
@@ -172,6 +174,8 @@ void restore_motion(MovingPacking& moving, const SavedState& saved) {
   moving.kinetic_energy = scalars.at(2);
   const std::vector<double>& sum = saved.real.at("velocity_sum");
   moving.noted_momentum = {sum.at(0), sum.at(1), sum.at(2)};
+  const std::vector<double>& along_gradient = saved.real.at("momentum_along_gradient");
+  moving.momentum_along_gradient = {along_gradient.at(0), along_gradient.at(1), along_gradient.at(2)};
   restore_ends(moving, saved);
   moving.step = saved.integer.at("step").at(0);
   moving.started = saved.integer.at("started").at(0) != 0;

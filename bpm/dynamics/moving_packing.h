@@ -44,6 +44,9 @@ struct MovingPacking {
   double kinetic_energy = 0.0; ///< k d^2
   /// Sum of all nodes' velocities without streaming when it was noted (total_momentum.h).
   Vector3 noted_momentum = Vector3::Zero();
+  /// What that sum loses while the packing as a whole moves along the streaming's gradient: the integral of the
+  /// streaming times the whole sum of velocities over time, d/tau.
+  Vector3 momentum_along_gradient = Vector3::Zero();
   double integration_seconds = 0.0, reduction_seconds = 0.0;
   std::int64_t migrated_grains = 0;
 };

@@ -49,7 +49,7 @@ void Stepper::advance(Virial virial) {
   evaluate({.kick = dt, .half_kick = 0.5 * dt, .virial = virial, .residual_rate = moving_.cell.residual_rate()});
   ++moving_.step;
   if (look && moving_.options.precision == Precision::mixed) {
-    restore_momentum(moving_, moving_.cell.streaming());
+    restore_momentum(moving_);
   }
 }
 
@@ -61,6 +61,7 @@ void Stepper::drift() {
   moving_.integration_seconds += omp_get_wtime() - begin;
   note_motion(motion);
   moving_.cell.note_drift();
+  note_motion_along_gradient(moving_);
 }
 
 /// Brings the velocities to the profile that the next positions are to have. Peculiar velocities stay as they are, and
@@ -77,7 +78,7 @@ void Stepper::change_streaming() {
     moving_.state.add_profile(blocks[b], change, cell.box().origin());
   }
   if (cell.next_streaming() == Matrix3::Zero()) {
-    restore_momentum(moving_, Matrix3::Zero());
+    restore_momentum_without_streaming(moving_);
   }
 }
 

@@ -27,20 +27,35 @@ Vector3 peculiar_velocity_sum(const MovingPacking& moving, const Matrix3& stream
   return sum;
 }
 
+void add_to_momentum(MovingPacking& moving, const Vector3& difference) {
+  const Vector3 change = difference / moving.n_nodes();
+#pragma omp parallel for schedule(dynamic, 1)
+  for (const int g : moving.layout.grains()) {
+    moving.state.add_velocity(g, change);
+  }
+}
+
 } // namespace
 
 void note_momentum(MovingPacking& moving, const Matrix3& streaming) {
   moving.noted_momentum = peculiar_velocity_sum(moving, streaming);
 }
 
-void restore_momentum(MovingPacking& moving, const Matrix3& streaming) {
-  if (!moving.ends.are_free()) {
-    return;
+void note_motion_along_gradient(MovingPacking& moving) {
+  moving.momentum_along_gradient += moving.options.dt * (moving.cell.streaming() * moving.noted_momentum);
+}
+
+void restore_momentum(MovingPacking& moving) {
+  if (moving.ends.are_free()) {
+    const Vector3 expected = moving.noted_momentum - moving.momentum_along_gradient;
+    add_to_momentum(moving, expected - peculiar_velocity_sum(moving, moving.cell.streaming()));
   }
-  const Vector3 change = (moving.noted_momentum - peculiar_velocity_sum(moving, streaming)) / moving.n_nodes();
-#pragma omp parallel for schedule(dynamic, 1)
-  for (const int g : moving.layout.grains()) {
-    moving.state.add_velocity(g, change);
+}
+
+void restore_momentum_without_streaming(MovingPacking& moving) {
+  moving.momentum_along_gradient.setZero();
+  if (moving.ends.are_free()) {
+    add_to_momentum(moving, moving.noted_momentum - peculiar_velocity_sum(moving, Matrix3::Zero()));
   }
 }
 

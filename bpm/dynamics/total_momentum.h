@@ -12,8 +12,16 @@ namespace boba {
 /// Notes the sum of all nodes' velocities without the profile `streaming` (1/tau) that they hold. Collective.
 void note_momentum(MovingPacking& moving, const Matrix3& streaming);
 
-/// Takes the change of that sum since it was noted from all nodes alike. Bonds and contacts cannot change it; walls and
-/// clamps can, and then nothing is done. Collective.
-void restore_momentum(MovingPacking& moving, const Matrix3& streaming);
+/// Adds a step's motion along the gradient of the streaming that the velocities hold now.
+void note_motion_along_gradient(MovingPacking& moving);
+
+/// Takes what rounding has changed of that sum since it was noted from all nodes alike; motion along the streaming's
+/// gradient has its part in the sum. Bonds and contacts cannot change it; walls and clamps can, and then nothing is
+/// done. Collective.
+void restore_momentum(MovingPacking& moving);
+
+/// When the last of a streaming profile is gone: gives the packing the momentum that it had before. Motion along the
+/// gradient has no part in it any more. Collective.
+void restore_momentum_without_streaming(MovingPacking& moving);
 
 } // namespace boba

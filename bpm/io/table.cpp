@@ -59,7 +59,7 @@ TableWriter TableWriter::go_on(const std::filesystem::path& path, const std::vec
     return TableWriter(path, columns, FileMode::overwrite);
   }
   if (!text.starts_with(header)) {
-    throw std::runtime_error(fmt::format("{}: begins with '{}'; a table to go on with begins with '{}'", path.string(),
+    throw std::runtime_error(fmt::format("{}: begins with '{}'; a table to continue begins with '{}'", path.string(),
                                          text.substr(0, text.find('\n')), header.substr(0, header.size() - 1)));
   }
   cut_file(path, header.size() + kept_length(text.substr(header.size()), last_step));
