@@ -118,9 +118,9 @@ private:
     for (const std::string& gap : setup_.gaps) {
       log_.say("gap accepted: " + gap);
     }
-    const std::string begin = setup_.restart
-                                  ? fmt::format("continuing at step {} from {}", simulation_.step(), setup_.restart->file)
-                                  : "starting";
+    const std::string begin =
+        setup_.restart ? fmt::format("continuing at step {} from {}", simulation_.step(), setup_.restart->file)
+                       : "starting";
     const std::string on_ranks = ranks_.is_distributed() ? fmt::format("{} ranks of ", ranks_.size()) : "";
     log_.say(fmt::format("{}: {} grains, {} nodes, {}{} threads, {} precision, {}; {}", setup_.scene.title,
                          simulation_.packing().n_grains(), numbers_.n_nodes, on_ranks, setup_.scene.options.threads,

@@ -55,7 +55,7 @@ TableWriter TableWriter::go_on(const std::filesystem::path& path, const std::vec
   const std::string header = header_of(columns);
   std::ifstream in(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (header.starts_with(text)) { // missing, empty, or killed while its first line was written
+  if (text.size() < header.size() && header.starts_with(text)) { // missing, empty, or killed within its first line
     return TableWriter(path, columns, FileMode::overwrite);
   }
   if (!text.starts_with(header)) {

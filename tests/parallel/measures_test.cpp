@@ -25,7 +25,7 @@ std::vector<std::string> run_into(const std::string& output, const std::vector<s
   return arguments;
 }
 
-constexpr int n_tables = 14;
+constexpr int n_tables = 15;
 
 void expect_same_tables(const std::filesystem::path& a, const std::filesystem::path& b, int n_files) {
   int n = 0;

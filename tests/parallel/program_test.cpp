@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program under mpirun: the same scene, the same files, to the last bit; stopped on some ranks and gone on with on
+// The program under mpirun: the same scene, the same files, to the last bit; stopped on some ranks and continued on
 // others.
+#include "bpm/app/output_record.h"
+#include "bpm/io/checkpoint.h"
 #include "tests/parallel/program_on_ranks.h"
 #include "tests/robustness/app/same_run.h"
 
@@ -30,8 +32,12 @@ TEST(ProgramOnRanks, WritesTheSameFiles) {
     EXPECT_EQ(count_of(result.out, "done at step"), 1) << result.out;
     EXPECT_NE(result.out.find(out + " ranks of "), std::string::npos) << result.out;
     expect_same_run(folder / "alone", folder / out);
+    // All but the sums of the files: the column of speed in table.csv is never the same.
     const auto checkpoint = [&](const std::string& run) {
-      return content_of(latest_checkpoint(folder / run / "checkpoints").path);
+      CheckpointData data = latest_checkpoint(folder / run / "checkpoints").data;
+      EXPECT_EQ(data.text.erase(output_record_name), 1U);
+      std::filesystem::create_directories(folder / ("compared-" + run));
+      return content_of(write_checkpoint(folder / ("compared-" + run), data));
     };
     EXPECT_TRUE(checkpoint("alone") == checkpoint(out)) << "the last checkpoints differ";
     for (const auto& entry : std::filesystem::directory_iterator(folder / "alone" / "measures")) {

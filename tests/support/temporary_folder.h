@@ -15,8 +15,9 @@ class TemporaryFolder {
 public:
   TemporaryFolder() {
     const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() /
-            ("boba-" + std::string(info->test_suite_name()) + "-" + info->name() + "-" + std::to_string(getpid()));
+    // Fuzzing runs outside of any test.
+    const std::string name = info != nullptr ? std::string(info->test_suite_name()) + "-" + info->name() : "no-test";
+    path_ = std::filesystem::temp_directory_path() / ("boba-" + name + "-" + std::to_string(getpid()));
     std::filesystem::create_directories(path_);
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
