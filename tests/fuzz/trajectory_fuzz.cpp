@@ -9,6 +9,8 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
@@ -83,11 +85,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   while (!bytes.empty() && edits.size() < 4) {
     edits.push_back(edit_of(bytes, sound.datasets));
   }
-  const std::filesystem::path path = boba::fuzz::file_of(sound.bytes);
+  // A new file each time: HDF5 knows files by their inode, and would not open one for writing that it still reads.
+  static std::uint64_t n_inputs = 0;
+  const std::filesystem::path path = sound.folder / ("input-" + std::to_string(n_inputs++) + ".h5");
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(sound.bytes.data()), static_cast<std::streamsize>(sound.bytes.size()));
   boba::test::apply(path, edits);
   try {
     boba::test::use_trajectory(path);
   } catch (const boba::InputError&) {
   }
+  std::filesystem::remove(path);
   return 0;
 }
