@@ -3,18 +3,38 @@
 
     import boba
     run = boba.open("out/shear")
-    run.table["mu"]                        # a column of table.csv
+    run.table["mu"]                        # a column of table.csv; run.table.to_pandas(), run.table.units
     run.measure("shape")["facets_mean"]    # a column of measures/shape.csv
     run.average("mu", 1, 5)                # mean and standard error over 1 < strain < 5
+    run.average("mu", 0, 1, stage="back")  # of one stage: its number, name or type
     run.frames[-1].grains[0]               # unwrapped node positions of a grain, d
     run.contacts(step)                     # contacts of one frame
+    run.universe()                         # MDAnalysis, where it is installed
     boba.crystallisation(run.measure("order"))  # onset, largest nucleus, whether the packing crystallised
 
 Needs numpy, and h5py for the frames. Columns and units: docs/formats-measure.md.
 """
+from ._version import __version__
+from .blocking import blocked_mean
 from .crystals import Crystallisation, crystallisation
-from .run import Frame, Frames, Run, blocked_mean, open_run
+from .frames import Frame, Frames
+from .run import Run, open_run
+from .scene import Stage
+from .table import Table, read_table
 
 open = open_run  # the module's own name for it: boba.open(run)
 
-__all__ = ["Crystallisation", "Frame", "Frames", "Run", "blocked_mean", "crystallisation", "open", "open_run"]
+__all__ = [
+    "Crystallisation",
+    "Frame",
+    "Frames",
+    "Run",
+    "Stage",
+    "Table",
+    "__version__",
+    "blocked_mean",
+    "crystallisation",
+    "open",
+    "open_run",
+    "read_table",
+]

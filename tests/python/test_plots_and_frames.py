@@ -1,25 +1,16 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The Python module on a small run made here: tables, averages, frames, pictures."""
 import pathlib
-import sys
 import tempfile
 import unittest
 
 import h5py
 import numpy as np
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "python"))
-import boba  # noqa: E402
-from boba import plot  # noqa: E402
-from boba.pictures import hull_of  # noqa: E402
-from boba.render import Picture, view_axes  # noqa: E402
-
-
-def write_table(path, columns):
-    rows = zip(*columns.values())
-    lines = [",".join(columns)] + [",".join("" if v is None else repr(v) for v in row) for row in rows]
-    path.write_text("\n".join(lines) + "\n")
+import boba
+from boba import plot
+from boba.pictures import hull_of
+from boba.render import Picture, view_axes
+from made_run import write_table
 
 
 def make_run(folder):
@@ -172,7 +163,3 @@ class Module(unittest.TestCase):
         )
         self.assertNotIn("crystal_classes", names)
         self.assertEqual(plot.main([str(self.folder / "nothing")]), 2)
-
-
-if __name__ == "__main__":
-    unittest.main()
