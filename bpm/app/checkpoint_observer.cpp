@@ -19,6 +19,7 @@ namespace {
 // Names of this file; the simulation's own have no slash.
 const std::string packing_prefix = "packing/";
 const std::string last_steps_name = "output/last_steps";
+const std::string strain_path_name = "output/strain_path";
 const std::string motion_name = "output/motion";
 
 bool is_simulation_name(const std::string& name) {
@@ -215,6 +216,10 @@ RunSetup setup_from(const LatestCheckpoint& checkpoint, const OutputFolder& fold
     }
     restart.step = data.integer.at("step").at(0);
     restart.last_steps = data.integer.at(last_steps_name);
+    if (const auto path = data.real.find(strain_path_name); path != data.real.end()) {
+      require(path->second.size() == 4 && all_finite(path->second), "the path of the strain is not four numbers");
+      restart.strain_path = path->second;
+    }
     if (const auto motion = data.real.find(motion_name); motion != data.real.end()) {
       restart.motion = motion->second;
     }
@@ -234,6 +239,7 @@ RunSetup setup_from(const LatestCheckpoint& checkpoint, const OutputFolder& fold
 
 void store_writers(CheckpointData& data, const RunWriters& writers) {
   data.integer[last_steps_name] = writers.last_steps();
+  data.real[strain_path_name] = writers.table->strain_path().saved();
   if (writers.motion) {
     data.real[motion_name] = writers.motion->save_motion();
   }

@@ -2,6 +2,8 @@
 #include "bpm/app/command.h"
 #include "bpm/app/measure/measure_run.h"
 #include "bpm/app/on_ranks.h"
+#include "bpm/app/run_files.h"
+#include "bpm/app/thread_warning.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -31,6 +33,9 @@ ExitCode measure_stored_frames(MeasureArguments a, const Ranks& ranks) {
   const MeasureRunResult result = measure_run(a.options, ranks);
   if (!ranks.is_root()) {
     return ExitCode::done;
+  }
+  if (a.options.output.empty()) {
+    add_to_file_list(OutputFolder(result.folder.parent_path()), files_of_measures(a.options.plan));
   }
   fmt::print("{} frame{} measured into {}\n{}", result.n_frames, result.n_frames == 1 ? "" : "s",
              result.folder.string(), result.averages);

@@ -72,7 +72,7 @@ public:
     const OutputPlan& plan = setup_.scene.output;
     checkpoints_ = std::make_unique<CheckpointObserver>(
         setup_.folder.checkpoints(), constant_part(setup_, simulation_), plan.checkpoint_seconds,
-        Schedule({std::nullopt, plan.checkpoint_time}, simulation_.strain(), simulation_.time()),
+        Schedule({std::nullopt, plan.checkpoint_time}, StrainPath(simulation_.strain()), simulation_.time()),
         [this](CheckpointData& data) {
           writers_.wait(); // what a checkpoint points back to is on disk
           store_writers(data, writers_);

@@ -30,6 +30,7 @@ struct RunSetup {
     std::int64_t step = 0;
     std::string file;
     std::vector<std::int64_t> last_steps; ///< written last: by the table, then by each writer of frames
+    std::vector<double> strain_path;      ///< of StrainPath::saved; empty in checkpoints of version 0.1
     std::vector<double> motion;           ///< of MeasureTables::save_motion; empty when motion is not measured
   };
   std::optional<Restart> restart;

@@ -14,7 +14,7 @@ namespace boba {
 namespace {
 
 std::string with_overrides(const Scene& scene) {
-  std::string text = scene.text;
+  std::string text = scene.text + (scene.text.ends_with('\n') ? "" : "\n") + "# Overrides of this run:\n";
   for (const std::string& assignment : scene.overrides) {
     text += "# --set " + assignment + "\n";
   }
@@ -133,7 +133,10 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
   RunWriters writers;
   const OutputPlan& plan = setup.scene.output;
   const auto schedule = [&](const OutputInterval& every) {
-    return Schedule(every, simulation.strain(), simulation.time());
+    const bool is_known = setup.restart && !setup.restart->strain_path.empty();
+    return Schedule(every,
+                    is_known ? StrainPath::restored(setup.restart->strain_path) : StrainPath(simulation.strain()),
+                    simulation.time());
   };
   const std::vector<std::string> columns = run_table_columns();
   const bool writes = simulation.ranks().is_root();

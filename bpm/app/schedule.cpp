@@ -19,11 +19,11 @@ std::int64_t Schedule::index(double value, const std::optional<double>& interval
 }
 
 bool Schedule::due(const StepForecast& forecast) {
-  const std::int64_t strain_index = index(forecast.strain, every_.strain);
+  const double before = path_.now();
+  const std::int64_t strain_index = index(path_.to(forecast.strain), every_.strain);
   const std::int64_t time_index = index(forecast.time, every_.time);
   const bool passed = strain_index != strain_index_ || time_index != time_index_ || time_index == countless ||
-                      (strain_index == countless && forecast.strain != strain_);
-  strain_ = forecast.strain;
+                      (strain_index == countless && path_.now() != before);
   strain_index_ = strain_index;
   time_index_ = time_index;
   return passed;

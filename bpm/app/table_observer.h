@@ -28,6 +28,7 @@ public:
   bool wants(const StepForecast& forecast) override;
   void observe(const Simulation& simulation, const StageProgress& progress) override;
   std::int64_t last_step() const { return last_step_; }
+  const StrainPath& strain_path() const { return schedule_.path(); }
 
 private:
   double steps_per_second(std::int64_t step);

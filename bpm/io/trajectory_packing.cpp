@@ -93,9 +93,6 @@ Packing read_trajectory_packing(const std::filesystem::path& file, int frame, st
   for (std::size_t i = 0; i < packing.velocity.size(); ++i) { // a stage adds the profile of its own shear
     packing.velocity[i][0] -= state.streaming_rate * (packing.position[i][1] - packing.box.origin()[1]);
   }
-  for (std::size_t i = 0; i < packing.velocity.size(); ++i) { // a stage adds the profile of its own shear
-    packing.velocity[i][0] -= state.streaming_rate * (packing.position[i][1] - packing.box.origin()[1]);
-  }
   packing.velocity.resize(packing.position.size(), Vector3::Zero());
   naming(file, [&] { check_sound(packing); });
   return packing;

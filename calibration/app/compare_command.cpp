@@ -50,9 +50,12 @@ void consult_table(CompareOptions& options) {
 }
 
 void common(CLI::App& command, CompareOptions& options) {
-  command.add_option("--alpha", options.settings.alphas, "Many-body coefficients, k d, separated by commas")
-      ->delimiter(',');
-  command.add_option("--poisson", options.poissons, "Poisson ratios instead: the table's alphas")->delimiter(',');
+  CLI::Option* alpha =
+      command.add_option("--alpha", options.settings.alphas, "Many-body coefficients, k d, separated by commas")
+          ->delimiter(',');
+  command.add_option("--poisson", options.poissons, "Poisson ratios instead: the table's alphas")
+      ->delimiter(',')
+      ->excludes(alpha);
   command
       .add_option("--calibration", options.calibration,
                   "fresh: from the bulk itself; table: the installed table's E and nu")

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/measure/measure_run.h"
 
+#include "bpm/app/measure/averages_file.h"
+#include "bpm/app/measure/measure_checks.h"
 #include "bpm/app/measure/measure_tables.h"
+#include "bpm/io/folder_lock.h"
 #include "bpm/io/input_error.h"
 #include "bpm/io/trajectory.h"
 #include "bpm/io/trajectory_packing.h"
-#include "bpm/measure/blocking.h"
 #include "bpm/parallel/message_passing.h"
+#include "bpm/parallel/usable_cores.h"
 #include "bpm/scene/scene.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
-#include <fstream>
 #include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <omp.h>
 #include <sstream>
 #include <utility>
@@ -23,29 +25,6 @@
 namespace boba {
 
 namespace {
-
-std::filesystem::path trajectory_of(const std::filesystem::path& run) {
-  return std::filesystem::is_directory(run) ? run / "trajectory.h5" : run;
-}
-
-std::filesystem::path folder_of(const MeasureRunOptions& options) {
-  if (!options.output.empty()) {
-    return options.output;
-  }
-  return (std::filesystem::is_directory(options.run) ? options.run : options.run.parent_path()) / "measures";
-}
-
-void check(const MeasureRunOptions& options) {
-  if (options.every < 1) {
-    throw InputError(fmt::format("measure: --every is {}; it must be at least 1", options.every));
-  }
-  if (options.every_strain && !(*options.every_strain > 0.0)) {
-    throw InputError(fmt::format("measure: --every-strain is {}; it must be positive", *options.every_strain));
-  }
-  if (options.plan.kinds.empty()) {
-    throw InputError("measure: nothing is asked for; --what names the measures");
-  }
-}
 
 /// Decides frame by frame, so that frames which are skipped are read no further than their strain.
 class FrameChoice {
@@ -87,6 +66,8 @@ std::optional<Scene> scene_of(const TrajectoryOrigin& origin, const std::filesys
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with(mark)) {
       overrides.push_back(line.substr(mark.size()));
+    } else if (!line.empty()) {
+      overrides.clear(); // comments of the same form before that came with the scene and mean nothing
     }
   }
   try {
@@ -96,7 +77,7 @@ std::optional<Scene> scene_of(const TrajectoryOrigin& origin, const std::filesys
   }
 }
 
-/// What evaluates the forces anew, or the reason why it cannot.
+/// What evaluates the forces again, or the reason why it cannot.
 std::pair<std::shared_ptr<FrameStress>, std::string>
 frame_stress(const MeasureRunOptions& options, const std::optional<Scene>& scene, const Ranks& ranks) {
   if (options.stored_stress) {
@@ -138,7 +119,8 @@ std::unique_ptr<MeasureTables> open_tables(const MeasureRunOptions& options, con
   MeasurePlan plan = options.plan;
   plan.material = scene ? scene->material : plan.material;
   const FileMode mode = options.force ? FileMode::overwrite : FileMode::create;
-  auto tables = std::make_unique<MeasureTables>(result.folder, reader.topology(), plan, undeformed, mode, -1, ranks);
+  auto tables = std::make_unique<MeasureTables>(result.folder, reader.topology(), plan, undeformed, mode, -1, ranks,
+                                                MeasureTables::Opening::with_first_frame);
   if (plan.rest && plan.has(MeasureKind::order) && ranks.is_root()) {
     tables->set_frame_rest(frame_rest(options, scene));
   }
@@ -150,78 +132,97 @@ std::unique_ptr<MeasureTables> open_tables(const MeasureRunOptions& options, con
   return tables;
 }
 
-/// averages.json and the same for the terminal.
-std::string write_averages(const std::filesystem::path& path, const MeasureTables& tables,
-                           const std::optional<std::array<double, 2>>& window) {
-  nlohmann::json json;
-  std::string lines;
-  for (const auto& [name, series] : tables.series()) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < series.value.size(); ++i) {
-      if (!window || (series.strain[i] > (*window)[0] && series.strain[i] < (*window)[1])) {
-        values.push_back(series.value[i]);
-      }
-    }
-    if (values.size() < 2) {
-      continue;
-    }
-    const measure::BlockedMean mean = measure::blocked_mean(values);
-    json[name] = {{"mean", mean.mean},
-                  {"standard_error", mean.standard_error},
-                  {"values", mean.n_values},
-                  {"block_size", mean.block_size},
-                  {"reached_plateau", mean.reached_plateau}};
-    lines += fmt::format("{:20s} {:.6g} +- {:.2g} ({} frames{})\n", name, mean.mean, mean.standard_error, mean.n_values,
-                         mean.reached_plateau ? "" : "; too few to know the error well");
+/// The folder of the tables, for this process alone; one that was made and stays empty is removed again.
+class TablesFolder {
+public:
+  explicit TablesFolder(const std::filesystem::path& folder) : folder_(folder) {
+    is_made_ = std::filesystem::create_directories(folder_);
+    lock_ = std::make_unique<FolderLock>(folder_ / "measure.lock", "boba measure");
   }
-  if (!json.empty()) {
-    if (window) {
-      json["strain_window"] = *window;
-    }
-    std::ofstream file(path);
-    file << json.dump(2) << '\n';
-    if (!file.flush()) {
-      throw std::runtime_error(fmt::format("{}: cannot be written", path.string()));
+  TablesFolder(const TablesFolder&) = delete;
+  TablesFolder& operator=(const TablesFolder&) = delete;
+  ~TablesFolder() {
+    lock_.reset();
+    std::error_code ignored;
+    if (is_made_) {
+      std::filesystem::remove(folder_, ignored); // only when it is empty
     }
   }
-  return lines;
-}
 
-} // namespace
+private:
+  std::filesystem::path folder_;
+  bool is_made_ = false;
+  std::unique_ptr<FolderLock> lock_;
+};
 
-MeasureRunResult measure_run(const MeasureRunOptions& options, const Ranks& ranks) {
-  if (options.threads > 0 || ranks.is_distributed()) {
-    omp_set_num_threads(options.threads > 0 ? options.threads : threads_of_a_rank(ranks));
-  }
-  std::optional<TrajectoryReader> reader;
-  ranks.collectively([&] {
-    check(options);
-    reader.emplace(trajectory_of(options.run));
-    if (reader->n_frames() == 0) {
-      throw InputError(fmt::format("{}: holds no complete frame yet", trajectory_of(options.run).string()));
-    }
-    if (options.only_frame) {
-      reader->snapshot(*options.only_frame); // names what is there when the frame is not
-    }
-  });
+/// Measures the frames that are chosen. What is wrong with the first one is wrong input: nothing has been written by
+/// then.
+void measure_frames(const MeasureRunOptions& options, const TrajectoryReader& reader, const Ranks& ranks,
+                    MeasureTables& tables, std::int64_t& n_measured) {
   // A run that goes on may have added a frame between the looks of two ranks.
-  const auto n_frames = static_cast<std::int64_t>(ranks.smallest(static_cast<double>(reader->n_frames())));
-  MeasureRunResult result;
-  std::unique_ptr<MeasureTables> tables;
-  ranks.collectively([&] { tables = open_tables(options, *reader, ranks, result); });
+  const auto n_frames = static_cast<std::int64_t>(ranks.smallest(static_cast<double>(reader.n_frames())));
   FrameChoice choice(options, n_frames);
   for (std::int64_t frame = 0; frame < n_frames; ++frame) {
     if (!choice.may_take(frame)) {
       continue;
     }
     Snapshot snapshot;
-    ranks.collectively([&] { snapshot = reader->snapshot(frame); });
-    if (choice.takes(snapshot)) {
-      tables->add(snapshot);
-      ++result.n_frames;
+    ranks.collectively([&] { snapshot = reader.snapshot(frame); });
+    if (!choice.takes(snapshot)) {
+      continue;
     }
+    const auto told = [&](const std::exception& error) {
+      return fmt::format("frame {} (step {}): {}; the tables hold the frames before it", frame, snapshot.step,
+                         error.what());
+    };
+    try {
+      tables.add(snapshot);
+    } catch (const RankError& error) {
+      if (n_measured == 0 || !error.is_wrong_input) {
+        throw;
+      }
+      throw RankError(error.rank, false, told(error));
+    } catch (const std::invalid_argument& error) {
+      if (n_measured == 0) {
+        throw;
+      }
+      throw std::runtime_error(told(error));
+    }
+    ++n_measured;
   }
-  ranks.on_root([&] { result.averages = write_averages(result.folder / "averages.json", *tables, options.window); });
+}
+
+/// Threads of this process: as many as it is told, or as the machine gives it.
+void choose_threads(const MeasureRunOptions& options, const Ranks& ranks) {
+  if (options.threads > 0 || ranks.is_distributed()) {
+    omp_set_num_threads(options.threads > 0 ? options.threads : threads_of_a_rank(ranks));
+  } else if (std::getenv("OMP_NUM_THREADS") == nullptr) {
+    omp_set_num_threads(usable_cores());
+  }
+}
+
+} // namespace
+
+MeasureRunResult measure_run(const MeasureRunOptions& options, const Ranks& ranks) {
+  choose_threads(options, ranks);
+  std::optional<TrajectoryReader> reader;
+  std::optional<AveragesFile> averages;
+  std::unique_ptr<TablesFolder> folder;
+  ranks.collectively([&] {
+    check_measure_options(options);
+    reader.emplace(trajectory_of(options.run));
+    check_measure_frames(options, *reader);
+  });
+  MeasureRunResult result;
+  std::unique_ptr<MeasureTables> tables;
+  ranks.on_root([&] {
+    check_measure_folder(options);
+    folder = std::make_unique<TablesFolder>(folder_of(options));
+    averages.emplace(folder_of(options) / "averages.json");
+  });
+  ranks.collectively([&] { tables = open_tables(options, *reader, ranks, result); });
+  measure_frames(options, *reader, ranks, *tables, result.n_frames);
+  ranks.on_root([&] { result.averages = averages->write(tables->series(), options.window); });
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace boba {
 
@@ -52,8 +53,8 @@ Tensor6 total_stress(const std::vector<Tensor6>& grains, const Box& box) {
 
 MeasureTables::MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan,
                              const UndeformedGrains& undeformed, FileMode mode, std::int64_t last_step,
-                             const Ranks& ranks)
-    : folder_(std::move(folder)), topology_(topology), plan_(std::move(plan)), ranks_(ranks) {
+                             const Ranks& ranks, Opening opening)
+    : folder_(std::move(folder)), topology_(topology), plan_(std::move(plan)), ranks_(ranks), mode_(mode) {
   if (!ranks_.is_root()) {
     return;
   }
@@ -69,16 +70,19 @@ MeasureTables::MeasureTables(std::filesystem::path folder, const Topology& topol
   for (int g = 0; g < topology_.n_grains(); ++g) {
     nominal_volume_ += nominal_volume(static_cast<int>(topology_.first_node[g + 1] - topology_.first_node[g]));
   }
-  std::filesystem::create_directories(folder_);
-  open(mode, last_step);
+  if (opening == Opening::now) {
+    open(last_step);
+  }
 }
 
-void MeasureTables::open(FileMode mode, std::int64_t last_step) {
+void MeasureTables::open(std::int64_t last_step) {
+  std::filesystem::create_directories(folder_);
   for (const auto& [name, columns] : tables_of(plan_)) {
     const std::filesystem::path path = folder_ / (name + ".csv");
-    tables_.emplace(name, mode == FileMode::append ? TableWriter::go_on(path, columns, last_step)
-                                                   : TableWriter(path, columns, mode));
+    tables_.emplace(name, mode_ == FileMode::append ? TableWriter::go_on(path, columns, last_step)
+                                                    : TableWriter(path, columns, mode_));
   }
+  is_open_ = true;
 }
 
 std::vector<MeasureTable> MeasureTables::tables_of(const MeasurePlan& plan) {
@@ -136,7 +140,11 @@ std::vector<MeasureTable> MeasureTables::tables_of(const MeasurePlan& plan) {
 void MeasureTables::write(const std::string& table, const Snapshot& snapshot, const Row& values) {
   Row row = {snapshot.time, snapshot.strain};
   row.insert(row.end(), values.begin(), values.end());
-  tables_.at(table).write(snapshot.step, row);
+  if (is_open_) {
+    tables_.at(table).write(snapshot.step, row);
+  } else {
+    waiting_.push_back({table, snapshot.step, std::move(row)});
+  }
 }
 
 void MeasureTables::note(const std::string& quantity, const Snapshot& snapshot, double value) {
@@ -185,6 +193,12 @@ void MeasureTables::write_frame(Frame& frame) {
   }
   if (plan_.has(motion)) {
     add_motion(frame);
+  }
+  if (!is_open_) {
+    open(-1);
+    for (const auto& [table, step, values] : std::exchange(waiting_, {})) {
+      tables_.at(table).write(step, values);
+    }
   }
 }
 

@@ -30,12 +30,15 @@ struct MeasureTable {
 /// have one alike: what takes long they measure together (measure_together), the rest and the tables are rank 0's.
 class MeasureTables {
 public:
+  /// When the tables are opened: with_first_frame leaves no trace of a frame that cannot be measured.
+  enum class Opening { now, with_first_frame };
+
   /// \param last_step with FileMode::append: rows after this step are removed, and the tables go on
   /// \param ranks must outlive this
   /// \throws std::runtime_error when a table exists (FileMode::create) or cannot be written.
   MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan,
                 const UndeformedGrains& undeformed, FileMode mode, std::int64_t last_step = -1,
-                const Ranks& ranks = Ranks::alone());
+                const Ranks& ranks = Ranks::alone(), Opening opening = Opening::now);
 
   /// The tables that a plan's measures write. Source: docs/formats-measure.md.
   static std::vector<MeasureTable> tables_of(const MeasurePlan& plan);
@@ -77,7 +80,7 @@ private:
 
   static std::vector<std::string> order_columns();
   static std::vector<std::string> grain_order_columns();
-  void open(FileMode mode, std::int64_t last_step);
+  void open(std::int64_t last_step);
   void write(const std::string& table, const Snapshot& snapshot, const Row& values);
   void note(const std::string& quantity, const Snapshot& snapshot, double value);
   double grain_number(int grain) const;
@@ -112,7 +115,15 @@ private:
   const Ranks& ranks_;
   std::shared_ptr<FrameStress> frame_stress_;
   std::shared_ptr<const FrameRest> frame_rest_;
+  FileMode mode_;
   std::map<std::string, TableWriter> tables_;
+  struct WaitingRow {
+    std::string table;
+    std::int64_t step;
+    Row values;
+  };
+  bool is_open_ = false;
+  std::vector<WaitingRow> waiting_; ///< rows of the first frame, until the tables are opened
   std::map<std::string, Series> series_;
 
   double nominal_volume_ = 0.0;                                      ///< of all grains, d^3

@@ -13,7 +13,7 @@ std::vector<std::int64_t> due_steps(const OutputInterval& every, double rate, st
   for (std::int64_t step = 1; step <= first; ++step) {
     strain += rate * 0.1;
   }
-  Schedule schedule(every, strain, 0.1 * static_cast<double>(first));
+  Schedule schedule(every, StrainPath(strain), 0.1 * static_cast<double>(first));
   std::vector<std::int64_t> due;
   for (std::int64_t step = first + 1; step <= last; ++step) {
     strain += rate * 0.1;
@@ -55,6 +55,33 @@ TEST(Schedule, ATinyIntervalIsDueAtEveryStep) {
 
 TEST(Schedule, LongRunsKeepTheirPace) {
   EXPECT_EQ(due_steps({0.01, std::nullopt}, 1e-3, 0, 1000000).size(), 10000U);
+}
+
+/// Forward to 0.05, back to -0.02: samples stand every 0.01 of path, none a step after the turn, and a run that was
+/// stopped anywhere takes the same.
+TEST(Schedule, ShearThatTurnsIsSampledByItsPath) {
+  const auto strain_at = [](std::int64_t step) { return 1e-4 * static_cast<double>(step <= 500 ? step : 1000 - step); };
+  const auto due_from = [&](Schedule& schedule, std::int64_t first, std::int64_t last) {
+    std::vector<std::int64_t> due;
+    for (std::int64_t step = first + 1; step <= last; ++step) {
+      if (schedule.due({step, 0.1 * static_cast<double>(step), strain_at(step), false})) {
+        due.push_back(step);
+      }
+    }
+    return due;
+  };
+  const OutputInterval every{0.01, std::nullopt};
+  Schedule whole(every, StrainPath(0.0), 0.0);
+  const std::vector<std::int64_t> expected = {100, 200, 300, 400, 500, 600, 700, 800, 900, 1000, 1100, 1200};
+  EXPECT_EQ(due_from(whole, 0, 1200), expected);
+  for (const std::int64_t stop : {1, 499, 500, 501, 777, 1001}) {
+    Schedule first(every, StrainPath(0.0), 0.0);
+    std::vector<std::int64_t> parts = due_from(first, 0, stop);
+    Schedule second(every, StrainPath::restored(first.path().saved()), 0.1 * static_cast<double>(stop));
+    const std::vector<std::int64_t> rest = due_from(second, stop, 1200);
+    parts.insert(parts.end(), rest.begin(), rest.end());
+    EXPECT_EQ(parts, expected) << "stopped at " << stop;
+  }
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "bpm/hdf5/hdf5_file.h"
 #include "bpm/io/input_error.h"
 #include "bpm/io/trajectory.h"
+#include "bpm/io/trajectory_packing.h"
 #include "tests/support/small_packings.h"
 #include "tests/support/temporary_folder.h"
 
@@ -109,6 +110,22 @@ TEST(Trajectory, GivesFramesByNumberAndStep) {
   EXPECT_THROW(reader.snapshot(-4), InputError);
   EXPECT_NE(test::message_of<InputError>([&] { reader.frame_of_step(7); }).find("between steps 5 and 9"),
             std::string::npos);
+}
+
+/// Positions that do not follow a shear carry its profile in their velocities. A stage adds the profile of its own.
+TEST(Trajectory, APackingStartsWithoutTheStreamingOfItsFrame) {
+  const TemporaryFolder folder;
+  const auto path = folder / "run.h5md";
+  TrajectoryWriter writer(path, small_topology(), small_origin(), {true, 0});
+  write_frames(writer, {5, 9});
+  const Snapshot frame = small_snapshot(9);
+  const Packing packing = read_trajectory_packing(path, -1, std::nullopt);
+  for (std::size_t node = 0; node < frame.position.size(); ++node) {
+    const double streaming = 0.018 * (frame.position[node][1] + 2.0); // rate times height above the cell's origin
+    EXPECT_NEAR(packing.velocity[node][0], frame.velocity[node][0] - streaming, 1e-13);
+    EXPECT_EQ(packing.velocity[node][1], frame.velocity[node][1]);
+    EXPECT_EQ(packing.velocity[node][2], frame.velocity[node][2]);
+  }
 }
 
 TEST(Trajectory, GoesOnAfterACheckpointWithoutDuplicates) {

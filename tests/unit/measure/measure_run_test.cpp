@@ -164,7 +164,7 @@ TEST(MeasureRun, TablesAreNotOverwrittenInSilence) {
   MeasureRunOptions options = all_of(run);
   options.plan.kinds = measure_kinds({"order"});
   measure_run(options);
-  EXPECT_THROW(measure_run(options), std::runtime_error);
+  EXPECT_THROW(measure_run(options), std::invalid_argument); // wrong input, as for a run
   options.force = true;
   options.only_frame = -1;
   EXPECT_EQ(measure_run(options).n_frames, 1);
