@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <list>
+#include <sstream>
 
 namespace boba {
 
@@ -168,6 +169,22 @@ std::string cell(const std::string& text) {
   return result;
 }
 
+/// The same words in lines of at most 118 columns.
+std::string wrapped(const std::string& text) {
+  std::istringstream words(text);
+  std::string result;
+  std::size_t column = 0;
+  for (std::string word; words >> word;) {
+    if (column > 0 && column + 1 + word.size() > 118) {
+      result += '\n';
+      column = 0;
+    }
+    result += column > 0 ? " " + word : word;
+    column += word.size() + (column > 0 ? 1 : 0);
+  }
+  return result;
+}
+
 } // namespace
 
 std::string scene_reference() {
@@ -186,8 +203,10 @@ std::string scene_reference() {
     const std::string brackets =
         section.repeated ? fmt::format("[[{}]]", section.path) : fmt::format("[{}]", section.path);
     const std::string name = section.path.empty() ? "Top of the file" : "`" + brackets + "`";
-    text += fmt::format("\n## {}{}\n\n{}\n", name, section.kind.empty() ? "" : " `type = \"" + section.kind + "\"`",
-                        section.doc);
+    text += fmt::format("\n## {}{}\n", name, section.kind.empty() ? "" : " `type = \"" + section.kind + "\"`");
+    if (!section.doc.empty()) {
+      text += "\n" + wrapped(section.doc) + "\n";
+    }
     if (!section.keys.empty()) {
       text += "\n| key | allowed | default | meaning |\n| --- | --- | --- | --- |\n";
     }
