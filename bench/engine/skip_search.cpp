@@ -77,9 +77,7 @@ void contacts(benchmark::State& state, Looked looked) {
   const std::vector<std::int64_t> first = stepper.packing().first_nodes();
   const ContactList& list = stepper.forces().contact_list();
   const kernels::KernelTable& table = stepper.forces().kernel_table();
-  const Material material;
-  const kernels::ContactParameters parameters = {material.k, material.k3, material.gamma, material.diameter,
-                                                 material.hertz_modulus};
+  const ContactLaw law;
   std::vector<kernels::ContactNode> node(now.position.size());
   std::vector<kernels::Touch> touches;
   std::vector<kernels::ContactNode> rows;
@@ -101,14 +99,14 @@ void contacts(benchmark::State& state, Looked looked) {
     for (const ContactPair& pair : list.pairs()) {
       const std::vector<kernels::NodePair>& candidates = looked == Looked::near ? pair.near : pair.candidates;
       const auto n = static_cast<std::int64_t>(candidates.size());
-      const auto room = static_cast<std::size_t>(kernels::touch_room(n));
-      touches.resize(std::max(touches.size(), room));
+      const auto capacity = static_cast<std::size_t>(kernels::touch_capacity(n));
+      touches.resize(std::max(touches.size(), capacity));
       rows.resize(touches.size());
       const Vector3 shift = now.box.h() * Vector3(pair.image.a, pair.image.b, pair.image.c);
       kernels::ContactSums sums = no_contacts;
       touching += static_cast<double>(table.contacts(
-          {candidates.data(), n, &node[first[pair.a]], &node[first[pair.b]], {shift[0], shift[1], shift[2]}, {}},
-          parameters, rows.data(), touches.data(), sums));
+          {candidates.data(), n, &node[first[pair.a]], &node[first[pair.b]], {shift[0], shift[1], shift[2]}, {}}, law,
+          rows.data(), touches.data(), sums));
       looked_at += static_cast<double>(n);
     }
     benchmark::DoNotOptimize(touches.data());

@@ -45,8 +45,9 @@ void Ledger::bonds(const Snapshot& s, const Matrix3& gradient, Powers& powers) c
       const double affine = e.dot(gradient * difference[b]);
       const double q = (volume[bond.i] + volume[bond.j]) / (volume0[bond.i] + volume0[bond.j]);
       const double many_body = alpha * (std::cbrt(q) - r / bond.r0);
-      const double damping = -material_.gamma * peculiar;
-      powers.bonds += bond_energy(material_.k, r, bond.r0);
+      const BondLaw law = bond_law(material_);
+      const double damping = -law.gamma * peculiar;
+      powers.bonds += law.energy(r, bond.r0);
       powers.many_body += many_body * (peculiar + affine);
       powers.damping -= damping * peculiar;
       powers.damping_box -= damping * affine;
@@ -57,6 +58,7 @@ void Ledger::bonds(const Snapshot& s, const Matrix3& gradient, Powers& powers) c
 
 void Ledger::contacts(const Snapshot& s, const Matrix3& gradient, Powers& powers) const {
   const double d = material_.diameter;
+  const ContactLaw law{material_.k, material_.gamma, material_.k3, d};
   const std::vector<int> grain_of = packing_.topology(false).grain_of_node();
   for (std::int64_t i = 0; i < static_cast<std::int64_t>(s.position.size()); ++i) {
     for (std::int64_t j = i + 1; j < static_cast<std::int64_t>(s.position.size()); ++j) {
@@ -73,9 +75,9 @@ void Ledger::contacts(const Snapshot& s, const Matrix3& gradient, Powers& powers
       const double r = std::sqrt(r2);
       const Vector3 e = difference / r;
       const double peculiar = e.dot(s.velocity[i] - s.velocity[j]), affine = e.dot(gradient * difference);
-      const double elastic = contact_force(material_.k, material_.k3, 0.0, d, r, 0.0);
-      const double damping = contact_force(0.0, 0.0, material_.gamma, d, r, peculiar);
-      powers.contacts += contact_energy(material_.k, material_.k3, d, r);
+      const double elastic = law.force(r, 0.0);
+      const double damping = law.slopes(r, 0.0).by_normal_velocity * peculiar;
+      powers.contacts += law.energy(r);
       powers.damping -= damping * peculiar;
       powers.damping_box -= damping * affine;
       powers.box -= (elastic + damping) * affine;

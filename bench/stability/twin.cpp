@@ -103,21 +103,21 @@ void Twin::add_bonds() {
       const Vector d = minus(x_[i], x_[j]);
       const Real r = std::sqrt(dot(d, d)), r0 = bond.r0;
       const Real q = std::cbrt((volume[bond.i] + volume[bond.j]) / (volume0[bond.i] + volume0[bond.j]));
-      const Real f = bond_force<Real, Real>(material_.k, alpha, material_.gamma, r, r0, 1 / r0, q,
-                                            dot(d, minus(v_[i], v_[j])) / r);
+      const Real f =
+          bond_law(material_).in<Real>().force<Real>(alpha, r, r0, 1 / r0, q, dot(d, minus(v_[i], v_[j])) / r);
       push(f_, i, j, d, f / r);
     }
   }
 }
 
 void Twin::add_contacts() {
+  const ContactLaw law{material_.k, material_.gamma, material_.k3, material_.diameter};
   for (const NodePair& pair : near_) {
     const Vector d = nearest(minus(x_[pair.i], x_[pair.j]), packing_.box);
     const Real r2 = dot(d, d), reach = material_.diameter;
     if (r2 < reach * reach) {
       const Real r = std::sqrt(r2);
-      const Real f = contact_force<Real, Real>(material_.k, material_.k3, material_.gamma, reach, r,
-                                               dot(d, minus(v_[pair.i], v_[pair.j])) / r);
+      const Real f = law.force<Real>(r, dot(d, minus(v_[pair.i], v_[pair.j])) / r);
       push(f_, pair.i, pair.j, d, f / r);
     }
   }

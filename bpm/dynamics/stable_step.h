@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/grain/grain_template.h"
+#include "bpm/grain/linear_network.h"
 #include "bpm/laws/material.h"
 #include "bpm/packing/packing.h"
 
@@ -19,6 +20,8 @@ namespace boba {
 /// \throws std::invalid_argument for a template without bonds.
 /// Source: roots of z^2 - (2 - dt^2 w^2 - c dt) z + (1 - c dt) on the unit circle; docs/notation.md, "Forces", "Time".
 double stable_step(const GrainTemplate& grain, const Material& material, double alpha);
+/// The same for a network linearised under any bond law.
+double stable_step(const LinearNetwork& network, double node_mass, double alpha);
 
 /// A time step and the many-body coefficient of the grains that it belongs to.
 struct PackingStep {

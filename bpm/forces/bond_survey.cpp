@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Passes over all bonds that are taken now and then, in plain scalars.
 #include "bpm/forces/force_field.h"
-#include "bpm/laws/bond.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,11 +28,12 @@ void for_each_bond(const NetworkData& data, const LaneState& state, const Box& b
 } // namespace
 
 double ForceField::bond_energy(const LaneState& state, const Box& box) const {
+  const BondLaw law = bond_law(material_);
   std::vector<double> energy(layout_.n_grains(), 0.0);
 #pragma omp parallel for schedule(dynamic, 8)
   for (const int g : layout_.grains()) {
     for_each_bond(*network_of_grain_[g], state, box, g,
-                  [&](int, double r, double r0) { energy[g] += boba::bond_energy(material_.k, r, r0); });
+                  [&](int, double r, double r0) { energy[g] += law.energy(r, r0); });
   }
   distribution_.ranks->share_rows(energy, 1, distribution_.ownership);
   double total = 0.0;

@@ -46,7 +46,7 @@ public:
   }
   /// Those in the rows that were added since the last time.
   std::span<const std::int32_t> find(const Vector3& x) {
-    const auto room = static_cast<std::size_t>(n_places_) + kernels::found_room;
+    const auto room = static_cast<std::size_t>(n_places_) + kernels::near_padding;
     if (found_.size() < room) {
       found_.resize(room);
     }

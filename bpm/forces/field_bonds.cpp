@@ -46,7 +46,7 @@ void ForceField::walls_on(int b, const LaneState& state, std::size_t wall, Real*
         }
       };
       wall_forces_[wall][grain] =
-          add_wall_forces(walls_[wall], material_, layout_, grain, state, add, with_sums, results_.contacts[grain]);
+          add_wall_forces(walls_[wall], *contact_, layout_, grain, state, add, with_sums, results_.contacts[grain]);
     }
   }
 }
@@ -77,8 +77,7 @@ ForceField::BondPass<Coordinate, Real> ForceField::bond_pass(int b, LaneState& s
                                   {lanes.x.data() + block.offset, lanes.v.data() + block.offset, nullptr, nullptr,
                                    block.alpha.data(), nullptr, state.quantum(), block.n_lanes},
                                   {},
-                                  {material_.k,
-                                   material_.gamma,
+                                  {bond_law(material_),
                                    what.kick / material_.node_mass,
                                    what.half_kick / material_.node_mass,
                                    material_.node_mass,
@@ -115,7 +114,8 @@ void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>&
   ImageBondSums image_sums{};
   if constexpr (std::is_same_v<Real, double>) { // the constructor refuses them in mixed precision
     if (!pass.network->image_bonds().empty()) {
-      image_sums = add_image_bonds(*pass.network, material_, box, what.residual_rate, block.many_body, pass.arrays);
+      image_sums =
+          add_image_bonds(*pass.network, bond_law(material_), box, what.residual_rate, block.many_body, pass.arrays);
     }
   }
   std::int64_t volumes_done = 0;

@@ -37,18 +37,16 @@ void ForceField::find_near(ContactPair& pair, const Box& box, double reach) {
 }
 
 void ForceField::contacts_between(ContactPair& pair, const Box& box, const Evaluation& what) {
-  const kernels::ContactParameters parameters = {material_.k, material_.k3, material_.gamma, material_.diameter,
-                                                 material_.hertz_modulus};
   thread_local std::vector<kernels::Touch> touches;
   thread_local std::vector<kernels::ContactNode> rows;
-  const auto room = static_cast<std::size_t>(kernels::touch_room(static_cast<std::int64_t>(pair.near.size())));
-  if (touches.size() < room) {
-    touches.resize(room);
-    rows.resize(room);
+  const auto capacity = static_cast<std::size_t>(kernels::touch_capacity(static_cast<std::int64_t>(pair.near.size())));
+  if (touches.size() < capacity) {
+    touches.resize(capacity);
+    rows.resize(capacity);
   }
   pair.sums = no_contacts;
-  const std::int64_t n_touching = table_.contacts(seen_by_kernels(pair, pair.near, box, what.residual_rate), parameters,
-                                                  rows.data(), touches.data(), pair.sums);
+  const std::int64_t n_touching = contact_->evaluate(seen_by_kernels(pair, pair.near, box, what.residual_rate),
+                                                     rows.data(), touches.data(), pair.sums);
   pair.touches.assign(touches.begin(), touches.begin() + n_touching);
 }
 

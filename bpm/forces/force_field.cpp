@@ -39,7 +39,7 @@ void share_grain_sums(std::vector<GrainSums>& grains, const Distribution& distri
 
 ForceField::ForceField(const Packing& packing, const LaneLayout& layout, const Material& material, double skin,
                        const Distribution& distribution)
-    : layout_(layout), material_(material), table_(kernels::best_table()),
+    : layout_(layout), material_(material), contact_(contact_model(material)), table_(kernels::best_table()),
       contact_list_(layout, table_, material.diameter, skin, distribution), distribution_(distribution) {
   for (const auto& grain_template : packing.templates) {
     networks_.emplace_back(*grain_template);

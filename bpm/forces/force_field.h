@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/forces/contact_halo.h"
+#include "bpm/forces/contact_laws.h"
 #include "bpm/forces/contact_list.h"
 #include "bpm/forces/image_bonds.h"
 #include "bpm/forces/kernels/kernels.h"
@@ -180,6 +181,7 @@ private:
 
   const LaneLayout& layout_;
   Material material_;
+  std::shared_ptr<const ContactModel> contact_; ///< the law between nodes, and between nodes and walls
   const kernels::KernelTable& table_;
   std::vector<NetworkData> networks_;
   std::vector<const NetworkData*> network_of_grain_;

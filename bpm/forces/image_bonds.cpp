@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/forces/image_bonds.h"
 
-#include "bpm/laws/bond.h"
-
 #include <cmath>
 #include <vector>
 
@@ -42,7 +40,7 @@ std::vector<double> all_volumes(const NetworkData& network, const Box& box, cons
 
 } // namespace
 
-ImageBondSums add_image_bonds(const NetworkData& network, const Material& material, const Box& box,
+ImageBondSums add_image_bonds(const NetworkData& network, const BondLaw& law, const Box& box,
                               const Matrix3& residual_rate, bool many_body, kernels::BlockArrays& arrays) {
   ImageBondSums sums{};
   const int stride = arrays.n_lanes;
@@ -58,8 +56,7 @@ ImageBondSums add_image_bonds(const NetworkData& network, const Material& materi
       const Vector3 w = triple(v, bond.i, stride) - triple(v, bond.j, stride) - residual_rate * bond.n.cast<double>();
       const double normal_velocity = d.dot(w) / r;
       const double cbrt_ratio = many_body ? std::cbrt((volume[bond.i] + volume[bond.j]) * bond.inverse_volume) : 1.0;
-      const double force =
-          bond_force(material.k, alpha, material.gamma, r, bond.r0, 1.0 / bond.r0, cbrt_ratio, normal_velocity);
+      const double force = law.force(alpha, r, bond.r0, 1.0 / bond.r0, cbrt_ratio, normal_velocity);
       const double s = force / r;
       for (int c = 0; c < 3; ++c) {
         arrays.f[(3 * static_cast<std::int64_t>(bond.i) + c) * stride + lane] += s * d[c];

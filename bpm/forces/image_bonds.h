@@ -3,7 +3,7 @@
 
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/forces/network_data.h"
-#include "bpm/laws/material.h"
+#include "bpm/laws/bond.h"
 #include "bpm/packing/box.h"
 
 namespace boba {
@@ -18,7 +18,7 @@ struct ImageBondSums {
 ///
 /// With `many_body` the node volumes that the forces need are those of *all* bonds: on return `arrays.volume` holds the
 /// image bonds' part, to which the hot loop adds its own.
-ImageBondSums add_image_bonds(const NetworkData& network, const Material& material, const Box& box,
+ImageBondSums add_image_bonds(const NetworkData& network, const BondLaw& law, const Box& box,
                               const Matrix3& residual_rate, bool many_body, kernels::BlockArrays& arrays);
 
 } // namespace boba

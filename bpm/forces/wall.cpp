@@ -7,9 +7,9 @@
 
 namespace boba {
 
-double add_wall_forces(const Wall& wall, const Material& material, const LaneLayout& layout, int grain,
+double add_wall_forces(const Wall& wall, const PlainContact& contact, const LaneLayout& layout, int grain,
                        const LaneState& state, const LaneForce& f, bool with_sums, kernels::ContactSums& sums) {
-  const double reach = 0.5 * material.diameter;
+  const double reach = 0.5 * contact.range();
   double total = 0.0;
   for (int node = 0; node < layout.n_nodes(grain); ++node) {
     const Vector3 x = state.position(grain, node);
@@ -18,8 +18,7 @@ double add_wall_forces(const Wall& wall, const Material& material, const LaneLay
       continue;
     }
     const Vector3 v = state.velocity(grain, node);
-    const double force =
-        wall_force(material.k, material.k3, material.gamma, material.diameter, z, wall.normal.dot(v - wall.velocity));
+    const double force = wall_force(contact, z, wall.normal.dot(v - wall.velocity));
     f(node, force * wall.normal);
     total += force;
     if (with_sums) {
@@ -32,7 +31,7 @@ double add_wall_forces(const Wall& wall, const Material& material, const LaneLay
       }
       const double r = std::max(2.0 * z, 0.0);
       sums.smallest_r2 = std::min(sums.smallest_r2, r * r);
-      sums.potential += 0.5 * contact_energy(material.k, material.k3, material.diameter, 2.0 * z);
+      sums.potential += wall_energy(contact, z);
     }
   }
   return total;

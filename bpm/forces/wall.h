@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bpm/forces/kernels/kernels.h"
-#include "bpm/laws/material.h"
+#include "bpm/laws/plain_laws.h"
 #include "bpm/packing/box.h"
 #include "bpm/packing/lane_state.h"
 
@@ -22,9 +22,10 @@ struct Wall {
 /// Adds a force to a node of the grain at hand.
 using LaneForce = std::function<void(int node, const Vector3& force)>;
 
-/// Hands one wall's forces on one grain to `f` and returns their sum along the normal. The virial (position of the
-/// contact plane times force) goes to the sums when asked for.
-double add_wall_forces(const Wall& wall, const Material& material, const LaneLayout& layout, int grain,
+/// By the contact law that the packing has: a wall is a mirror image. Hands one wall's forces on one grain to `f` and
+/// returns their sum along the normal. The virial (position of the contact plane times force) goes to the sums when
+/// asked for.
+double add_wall_forces(const Wall& wall, const PlainContact& contact, const LaneLayout& layout, int grain,
                        const LaneState& state, const LaneForce& f, bool with_sums, kernels::ContactSums& sums);
 
 } // namespace boba

@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 using Shape = TemplateSpec::Shape;
 using Surface = TemplateSpec::Surface;
 
-constexpr double wall_compaction = 1.41 / 1.226; // density inside the wall's outline over that of the bulk
+constexpr double wall_compaction = 1.41 / bulk_node_density; // density inside the wall's outline over that of the bulk
 constexpr int cut_attempts = 200;
 constexpr int wall_attempts = 10;
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/grain/grain_template.h"
 
+#include "bpm/grain/bulk_density.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -18,8 +20,7 @@ bool is_at_rest(const GrainTemplate& grain) {
 }
 
 double nominal_volume(int n_nodes) {
-  constexpr double bulk_density = 1.226; // nodes per d^3
-  return n_nodes == 1 ? std::numbers::pi / 6.0 : n_nodes / bulk_density;
+  return n_nodes == 1 ? std::numbers::pi / 6.0 : n_nodes / bulk_node_density;
 }
 
 std::vector<double> reference_node_volumes(int n_nodes, const std::vector<Bond>& bonds) {

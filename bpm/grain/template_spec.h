@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/grain/bulk_density.h"
+
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
@@ -32,8 +34,8 @@ struct TemplateSpec {
   Eigen::Vector3d size = Eigen::Vector3d::Constant(20.0);
   std::optional<int> n_nodes = std::nullopt;
   std::uint64_t seed = 1;
-  double bond_cutoff = 1.5; ///< pairs closer than this in the undeformed grain are bonded
-  double density = 1.226;   ///< of the bulk arrangement
+  double bond_cutoff = 1.5;           ///< pairs closer than this in the undeformed grain are bonded
+  double density = bulk_node_density; ///< of the bulk arrangement
 };
 
 /// True for a sphere of one node: a rigid sphere of diameter d, without bonds.

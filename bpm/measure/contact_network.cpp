@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/contact_network.h"
 
+#include "bpm/forces/contact_laws.h"
 #include "bpm/forces/contact_search.h"
 #include "bpm/forces/grain_neighbours.h"
-#include "bpm/laws/contact.h"
 #include "bpm/measure/footprint.h"
 #include "bpm/measure/parallel_loop.h"
 
@@ -36,8 +36,8 @@ class NetworkBuilder {
 public:
   /// For the contacts of these grains.
   NetworkBuilder(const Box& box, const GrainNodes& grains, const Material& material, const DealtItems& items)
-      : box_(box), grains_(grains), material_(material), bounds_(bounds_of(grains)), centres_(grain_centres(grains)),
-        neighbours_(grains.n_grains()), grids_(grains.n_grains()) {
+      : box_(box), grains_(grains), material_(material), law_(contact_model(material)), bounds_(bounds_of(grains)),
+        centres_(grain_centres(grains)), neighbours_(grains.n_grains()), grids_(grains.n_grains()) {
     const GrainNeighbours all(bounds_, box, material.diameter);
     parallel_loop(items, [&](std::int64_t g) { neighbours_[g] = first_side_neighbours(all, static_cast<int>(g)); });
     std::vector<char> needed(grains.n_grains(), 0);
@@ -93,9 +93,7 @@ private:
       if (!(r < material_.diameter)) {
         continue;
       }
-      const double force = material_.hertz_modulus > 0.0
-                               ? hertz_force(material_.hertz_modulus, 0.0, material_.diameter, r, 0.0)
-                               : contact_force(material_.k, material_.k3, 0.0, material_.diameter, r, 0.0);
+      const double force = law_->force(r, 0.0);
       contact.force += force * (r > 0.0 ? Vector3(from_other / r) : Vector3(Vector3::Zero()));
       contact.largest_overlap = std::max(contact.largest_overlap, material_.diameter - r);
       midpoints.push_back(own[pair.i] - 0.5 * from_other);
@@ -114,6 +112,7 @@ private:
   const Box& box_;
   const GrainNodes& grains_;
   const Material& material_;
+  std::shared_ptr<const ContactModel> law_;
   std::vector<Bounds> bounds_;
   std::vector<Vector3> centres_;
   std::vector<std::vector<NeighbourGrain>> neighbours_;

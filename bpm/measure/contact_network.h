@@ -25,10 +25,10 @@ struct GrainContact {
 
 /// All contacts between grains, ordered by grain, other grain and image; each once.
 ///
-/// Force: sum over the touching node pairs of [k (d - r) + k3 (d - r)^3] e; damping is left out, since stored frames
-/// need not hold velocities. Area: the midpoints of the pairs are projected along the normal, and the hull of discs of
-/// diameter d around them is taken, A = A_hull + L_hull d/2 + pi d^2/4 (one pair alone: the disc).
-/// \param ranks collective: all call it alike, each finds the contacts of its own grains (DealtItems), and all have all
+/// Force: sum over the touching node pairs of f(r) e, f the contact law at rest; damping is left out, since stored
+/// frames need not hold velocities. Area: the midpoints of the pairs are projected along the normal, and the hull of
+/// discs of diameter d around them is taken, A = A_hull + L_hull d/2 + pi d^2/4 (one pair alone: the disc). \param
+/// ranks collective: all call it alike, each finds the contacts of its own grains (DealtItems), and all have all
 /// \throws std::invalid_argument for a contact distance that is not positive.
 /// Source: docs/formats-measure.md, "Contact network"; force: bpm/laws/contact.h.
 std::vector<GrainContact> contact_network(const Box& box, const GrainNodes& grains, const Material& material = {},

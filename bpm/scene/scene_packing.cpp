@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/scene/scene_packing.h"
 
+#include "bpm/forces/contact_laws.h"
 #include "bpm/grain/template_cache.h"
 #include "bpm/io/input_error.h"
 #include "bpm/scene/scene_size.h"
@@ -92,8 +93,8 @@ void check_time_step(const Scene& scene, const std::optional<PackingStep>& stabl
 }
 
 std::optional<double> effective_modulus(const Packing& packing, const Material& material, const PoissonTable& table) {
-  if (material.hertz_modulus > 0.0) {
-    return material.hertz_modulus;
+  if (const auto modulus = contact_model(material)->effective_modulus()) {
+    return modulus;
   }
   double sum = 0.0, nodes = 0.0;
   for (int g = 0; g < packing.n_grains(); ++g) {

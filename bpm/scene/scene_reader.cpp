@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/forces/contact_laws.h"
 #include "bpm/io/input_error.h"
+#include "bpm/laws/hertz.h"
 #include "bpm/parallel/usable_cores.h"
 #include "bpm/scene/override_text.h"
 #include "bpm/scene/scene.h"
@@ -165,16 +167,44 @@ void read_templates(const SceneTables& tables, Scene& scene) {
   }
 }
 
+/// The contact law and the values of its parameters; parameters of other laws are refused.
+void read_contact_law(const SceneTable& table, Material& material) {
+  const std::string usual = table.has(HertzLaw::modulus_parameter.name) ? HertzLaw::name : ContactLaw::name;
+  material.contact = table.text("contact", usual);
+  const std::string k3 = ContactLaw::k3_parameter.name;
+  if (material.contact != ContactLaw::name && table.has(k3)) {
+    table.fail(k3, fmt::format("belongs to contact = \"{}\"; this is \"{}\"", ContactLaw::name, material.contact));
+  }
+  material.k3 = table.real(k3, material.k3);
+  for (const ContactLawEntry& law : contact_laws()) {
+    for (const Parameter& parameter : law.parameters) {
+      const bool has_default = parameter.usual >= parameter.lowest && parameter.usual <= parameter.highest;
+      if (law.name != material.contact && table.has(parameter.name)) {
+        table.fail(parameter.name,
+                   fmt::format("belongs to contact = \"{}\"; this is \"{}\"", law.name, material.contact));
+      }
+      if (law.name == material.contact) {
+        if (!table.has(parameter.name) && !has_default) {
+          table.fail("contact", fmt::format("needs {} ({}) beside it", parameter.name, parameter.unit));
+        }
+        material.contact_parameters.push_back(table.real(parameter.name, parameter.usual));
+      }
+    }
+  }
+}
+
 /// Hertz's law is for two whole spheres, not for nodes of a network.
-void check_hertz(const SceneTables& tables, const Scene& scene) {
-  if (scene.material.hertz_modulus == 0.0) {
+void check_contact_law(const SceneTables& tables, const Scene& scene) {
+  if (!contact_law_of(scene.material).for_spheres) {
     return;
   }
   const bool spheres =
       !scene.templates.empty() && std::all_of(scene.templates.begin(), scene.templates.end(),
                                               [](const SceneTemplate& t) { return is_single_node(t.spec); });
   if (!spheres) {
-    tables.table("material").fail("hertz_modulus", "is for spheres of one node: every [[template]] needs nodes = 1");
+    const SceneTable& table = tables.table("material");
+    const std::string key = contact_law_of(scene.material).parameters.front().name;
+    table.fail(key, "is for spheres of one node: every [[template]] needs nodes = 1");
   }
 }
 
@@ -268,11 +298,10 @@ Scene read_tree(const std::string& text, const std::filesystem::path& path, cons
   const SceneTable& material = tables.table("material");
   scene.material.k = material.real("k", scene.material.k);
   scene.material.gamma = material.real("gamma", scene.material.gamma);
-  scene.material.k3 = material.real("k3", scene.material.k3);
-  scene.material.hertz_modulus = material.real("hertz_modulus", 0.0);
+  read_contact_law(material, scene.material);
   read_measures(tables, scene);
   read_templates(tables, scene);
-  check_hertz(tables, scene);
+  check_contact_law(tables, scene);
   read_species(tables, scene);
   read_start(tables, scene, must_exist);
   scene.stages = read_stages(tables, scene);

@@ -2,6 +2,7 @@
 // The scene format, as a table. Nothing else in the program lists its keys.
 #include "bpm/scene/scene_schema.h"
 
+#include "bpm/forces/contact_laws.h"
 #include "bpm/stages/stage_registry.h"
 #include "bpm/stages/start_registry.h"
 
@@ -95,16 +96,35 @@ std::vector<SceneSection> general_sections() {
   };
 }
 
+SceneKey parameter_key(const Parameter& p) {
+  const bool has_default = p.usual >= p.lowest && p.usual <= p.highest;
+  SceneKey key =
+      real_key(p.name, p.unit, p.lowest, p.highest, has_default ? fmt::format("{:g}", p.usual) : "", p.meaning);
+  key.above_lowest = p.above_lowest;
+  return key;
+}
+
+/// Which contact law, and the parameters of each.
+std::vector<SceneKey> contact_law_keys() {
+  std::vector<std::string> names;
+  std::vector<SceneKey> parameters = {parameter_key(ContactLaw::k3_parameter)};
+  for (const ContactLawEntry& law : contact_laws()) {
+    names.push_back(law.name);
+    for (const Parameter& parameter : law.parameters) {
+      parameters.push_back(parameter_key(parameter));
+    }
+  }
+  return joined({choice_key("contact", names, "\"hookean\"",
+                            "law of the contacts between nodes, and between nodes and walls (docs/notation.md); a key "
+                            "of the law \"hertz\" chooses it too")},
+                parameters);
+}
+
 std::vector<SceneSection> material_sections() {
   return {
-      section("material", "Constants that all grains share.",
-              {above_key("k", "k", 0.0, 1e6, "1", "stiffness of bonds and contacts (1 in the engine's units)"),
-               real_key("gamma", "sqrt(k m)", 0.0, 100.0, "1", "damping of bonds and contacts"),
-               real_key("k3", "k/d^2", 0.0, 1e6, "50", "cubic part of the contact repulsion"),
-               above_key(
-                   "hertz_modulus", "k/d", 0.0, 1e6, "",
-                   "contacts of rigid spheres by Hertz's law with this E / (2 - 2 nu^2), instead of k and k3; gamma is "
-                   "then the share of critical damping. For grains of one node only")}),
+      section(
+          "material", "Constants that all grains share.",
+          joined({parameter_key(BondLaw::k_parameter), parameter_key(BondLaw::gamma_parameter)}, contact_law_keys())),
       repeated(
           "template", "An undeformed grain. Built once, then read from the cache (`~/.cache/boba`, or BOBA_CACHE_DIR).",
           {required(text_key("name", "", "what [[species]] calls it")),

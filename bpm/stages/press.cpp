@@ -2,6 +2,7 @@
 #include "bpm/stages/press.h"
 
 #include "bpm/dynamics/stepper.h"
+#include "bpm/laws/hertz.h"
 #include "bpm/scene/schema.h"
 
 #include <algorithm>
@@ -103,7 +104,7 @@ PressEntry::PressEntry(const SceneTable& table) {
 
 void PressEntry::check(const SceneTable& table, const StageSurroundings& surroundings) const {
   require_open_cell(table, surroundings);
-  if (surroundings.material.hertz_modulus > 0.0) {
+  if (surroundings.material.contact == HertzLaw::name) {
     table.fail("type", "has no meaning with material.hertz_modulus: Hertz's law is for contacts of two spheres, not "
                        "for walls and clamps");
   }

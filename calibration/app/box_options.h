@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/grain/bulk_density.h"
 #include "calibration/network/alpha_sweep.h"
 
 #include <CLI/CLI.hpp>
@@ -14,7 +15,7 @@ struct BoxOptions {
   int nodes = 0;
   int seeds = 3;
   std::uint64_t seed = 1;
-  double density = 1.226;
+  double density = bulk_node_density;
   double bond_cutoff = 1.5;
   double tolerance = 1e-5;
 

@@ -22,7 +22,7 @@ int limit(LimitOptions options) {
   options.spec.size.setConstant(1.0);
   options.spec.n_nodes = options.nodes;
   const GrainTemplate grain = TemplateCache().get(options.spec);
-  const LinearNetwork network(grain);
+  const LinearNetwork network = connected_network(grain);
   require_rigid(network);
   const StabilityLimit lower = lower_stability_limit(network);
   const StabilityLimit upper = upper_stability_limit(network);

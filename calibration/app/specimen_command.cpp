@@ -133,7 +133,7 @@ int specimen(const SpecimenOptions& options) {
   const GrainTemplate bulk = TemplateCache().get(bulk_spec(options), tell);
   const BulkDensity density = bulk_density(bulk);
   const ElasticConstants solid =
-      isotropic_part(relaxed_stiffness(LinearNetwork(bulk), {options.test.alpha}).front().stiffness);
+      isotropic_part(relaxed_stiffness(connected_network(bulk), {options.test.alpha}).front().stiffness);
   fmt::print("network: nu = {:.4f}, E = {:.4f} k/d (the bulk of {} nodes); E in % of it, by four areas\n"
              "{:>8} {:>5} {:>5} {:>8} {:>8} {:>8} {:>9} {:>9} {:>5} {:>9} {:>9} {:>9} {:>8}\n",
              solid.poisson(), solid.young(), bulk.n_nodes(), "", "R/d", "H/d", "nodes", "nu", "E d/k", "R_bond/d",

@@ -14,7 +14,6 @@ namespace boba::calibration {
 
 namespace {
 
-constexpr double k3 = 50.0;              // k/d^2, the engine's default
 constexpr double largest_step = 0.1;     // d, of one contact's approach between two relaxed states
 constexpr double force_tolerance = 1e-7; // k d, root mean square residual of a state that is told
 constexpr double path_tolerance = 1e-3;  // k d, of the states on the way to it
@@ -129,7 +128,7 @@ void measure_contact(const std::vector<Vector3>& reference, const std::vector<Ve
   for (std::size_t n = 0; n < position.size(); ++n) {
     const double z = wall - position[n].z();
     if (z < 0.5) {
-      const double f = wall_force(1.0, k3, 0.0, 1.0, z, 0.0);
+      const double f = wall_force(ContactLaw{}, z, 0.0);
       force += f;
       centre += f * reference[n].head<2>();
       moment += f * reference[n].head<2>().squaredNorm();

@@ -13,7 +13,7 @@ namespace boba::calibration {
 Solid calibrate_solid(const GrainTemplate& box, double alpha, const std::filesystem::path& folder,
                       double largest_strain) {
   Solid solid{.alpha = alpha};
-  solid.constants = isotropic_part(relaxed_stiffness(LinearNetwork(box), {alpha}).front().stiffness);
+  solid.constants = isotropic_part(relaxed_stiffness(connected_network(box), {alpha}).front().stiffness);
   solid.compression = folder / fmt::format("compression_{:g}.csv", alpha);
   std::ofstream file(solid.compression);
   file << "# compressive strain, compressive nominal stress (k/d), lateral strain\n";

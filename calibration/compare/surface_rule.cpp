@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibration/compare/surface_rule.h"
 
+#include "bpm/laws/wall.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
 
 namespace boba::calibration {
-
-namespace {
-
-constexpr double k3 = 50.0; // k/d^2, the engine's default
-
-} // namespace
 
 SurfaceRule surface_rule(const GrainTemplate& sphere, double density) {
   if (sphere.period) {
@@ -24,8 +20,9 @@ SurfaceRule surface_rule(const GrainTemplate& sphere, double density) {
   }
   std::sort(radius.begin(), radius.end(), std::greater<>());
   SurfaceRule rule{.nodes_per_area = std::pow(density, 2.0 / 3.0)};
-  rule.c1 = 2.0 * rule.nodes_per_area;
-  rule.c3 = 8.0 * k3 * rule.nodes_per_area;
+  const ContactLaw law;
+  rule.c1 = -wall_slopes(law, 0.5 * law.range(), 0.0).by_distance * rule.nodes_per_area;
+  rule.c3 = 8.0 * law.k3 * rule.nodes_per_area;
   double sum = 0.0, mean = 0.0;
   while (rule.n_layer < static_cast<int>(radius.size())) { // until the layer is full at its own mean radius
     sum += radius[rule.n_layer];

@@ -90,7 +90,7 @@ Sweep run_sweep(const SweepSettings& settings) {
     sweep.n_nodes = box.n_nodes();
     sweep.template_seconds += seconds() - start;
     start = seconds();
-    const LinearNetwork network(box);
+    const LinearNetwork network = connected_network(box);
     if (s == 0) {
       require_stable(network, sweep, *std::min_element(settings.alphas.begin(), settings.alphas.end()));
     }

@@ -49,11 +49,11 @@ Matrix to_petsc(const BlockRows& rows) {
   return matrix;
 }
 
-/// sum over bonds of weight(b) B_b^T B_b.
-template <class Weight> BlockRows pair_rows(const LinearNetwork& network, Weight&& weight) {
+/// sum over bonds of weight(b) B_b^T B_b. `part`: 0 for alpha = 0, 1 for the change per alpha.
+BlockRows pair_rows(const LinearNetwork& network, int part) {
   BlockRows rows(network.n_nodes());
   for (const LinearBond& bond : network.bonds()) {
-    const Matrix3 block = weight(bond) * bond.e * bond.e.transpose();
+    const Matrix3 block = bond.spring[part] * bond.e * bond.e.transpose();
     add_block(rows, bond.i, bond.i, block);
     add_block(rows, bond.j, bond.j, block);
     add_block(rows, bond.i, bond.j, -block);
@@ -62,15 +62,15 @@ template <class Weight> BlockRows pair_rows(const LinearNetwork& network, Weight
   return rows;
 }
 
-/// Subtracts B^T W N^T R B: with the nodal sums q_m = sum_b r0^2 B_b u = G_m u, bond b pulls with -(q_i + q_j) / (V0_i
-/// + V0_j).
-void subtract_many_body(BlockRows& rows, const LinearNetwork& network) {
+/// Subtracts B^T W N^T R B: with the nodal sums q_m = sum_b r0^2 B_b u = G_m u, bond b pulls with -swelling (q_i +
+/// q_j).
+void subtract_many_body(BlockRows& rows, const LinearNetwork& network, int part) {
   std::vector<std::map<int, Vector3>> gather(network.n_nodes()), scatter(network.n_nodes());
   const auto add = [](std::map<int, Vector3>& row, int column, const Vector3& value) {
     row.try_emplace(column, Vector3::Zero()).first->second += value;
   };
   for (const LinearBond& bond : network.bonds()) {
-    const Vector3 weighted = bond.r0 * bond.r0 * bond.e, pull = bond.inverse_volume * bond.e;
+    const Vector3 weighted = bond.r0 * bond.r0 * bond.e, pull = bond.swelling[part] * bond.e;
     for (const int m : {bond.i, bond.j}) {
       add(gather[m], bond.i, weighted);
       add(gather[m], bond.j, -weighted);
@@ -127,8 +127,8 @@ NetworkOperator::NetworkOperator(const LinearNetwork& network)
   const int n = 3 * network.n_nodes();
   check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, this, shell_.address()), "MatCreateShell");
   check(MatShellSetOperation(shell_, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)), "MatShellSetOperation");
-  pair0_ = to_petsc(pair_rows(network, [](const LinearBond&) { return 1.0; }));
-  pair1_ = to_petsc(pair_rows(network, [](const LinearBond& bond) { return 1.0 / bond.r0; }));
+  pair0_ = to_petsc(pair_rows(network, 0));
+  pair1_ = to_petsc(pair_rows(network, 1));
   check(MatDuplicate(pair0_, MAT_COPY_VALUES, pair_.address()), "MatDuplicate");
   const Vector x = coordinates(network);
   NullSpace near_null_space; // multigrid wants the rotations too, though a periodic network has none
@@ -147,19 +147,24 @@ void NetworkOperator::set_alpha(double alpha) {
 }
 
 Matrix NetworkOperator::assembled_a0() const {
-  return to_petsc(pair_rows(network_, [](const LinearBond&) { return 1.0; }));
+  BlockRows rows = pair_rows(network_, 0);
+  const auto has_swelling = [](const LinearBond& bond) { return bond.swelling[0] != 0.0; };
+  if (std::any_of(network_.bonds().begin(), network_.bonds().end(), has_swelling)) {
+    subtract_many_body(rows, network_, 0);
+  }
+  return to_petsc(rows);
 }
 
 Matrix NetworkOperator::assembled_a1() const {
-  BlockRows rows = pair_rows(network_, [](const LinearBond& bond) { return 1.0 / bond.r0; });
-  subtract_many_body(rows, network_);
+  BlockRows rows = pair_rows(network_, 1);
+  subtract_many_body(rows, network_, 1);
   return to_petsc(rows);
 }
 
 Matrix NetworkOperator::assembled(double alpha) const {
   Matrix matrix = assembled_a1();
   check(MatScale(matrix, alpha), "MatScale");
-  check(MatAXPY(matrix, 1.0, pair0_, SUBSET_NONZERO_PATTERN), "MatAXPY");
+  check(MatAXPY(matrix, 1.0, assembled_a0(), SUBSET_NONZERO_PATTERN), "MatAXPY");
   check(MatSetNullSpace(matrix, null_space_), "MatSetNullSpace");
   check(MatSetTransposeNullSpace(matrix, null_space_), "MatSetTransposeNullSpace");
   return matrix;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "calibration/network/linear_network.h"
+#include "calibration/network/connected_network.h"
 #include "calibration/network/petsc_handle.h"
 
 namespace boba::calibration {
@@ -10,7 +10,7 @@ namespace boba::calibration {
 ///
 /// * `matrix()` applies the operator from the bond list (no matrix of second neighbours, 16 times smaller than the
 ///   assembled one and several times as fast);
-/// * `pair_matrix()` is its nearest-neighbour part P = sum over bonds of (1 + alpha_p / r0) B_b^T B_b in 3x3 blocks,
+/// * `pair_matrix()` is its nearest-neighbour part P = sum over bonds of spring(alpha_p) B_b^T B_b in 3x3 blocks,
 /// from
 ///   which the preconditioner is made: symmetric and positive, alpha_p = max(alpha, -0.7);
 /// * `assembled()` is the whole operator in 3x3 blocks, for checks and for solvers that need its entries.

@@ -55,10 +55,10 @@ PetscErrorCode multiply_quotient(Mat matrix, Vec in, Vec out) {
   PetscCall(VecGetArrayRead(in, &u));
   PetscCall(VecGetArrayWrite(self->product, &f));
   // A1 u = (A0 + A1) u - A0 u, from the bonds: tensions are linear in alpha.
-  const std::vector<double> s = network.stretch(u);
+  const std::vector<double> s = network.stretch(u), t0 = network.tension(s, 0.0);
   std::vector<double> t = network.tension(s, 1.0);
   for (std::size_t b = 0; b < s.size(); ++b) {
-    t[b] -= s[b];
+    t[b] -= t0[b];
   }
   std::fill_n(f, 3 * network.n_nodes(), 0.0);
   network.add_nodal(t, f);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "calibration/network/linear_network.h"
+#include "calibration/network/connected_network.h"
 
 #include <limits>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/grain/bulk_density.h"
 #include "bpm/grain/grain_template.h"
 #include "bpm/grain/template_spec.h"
 
@@ -11,8 +12,8 @@ namespace boba::calibration {
 
 /// What a bulk holds per volume: the measures by which the size of a body cut from it is told.
 struct BulkDensity {
-  double nodes = 1.226; ///< d^-3
-  double bonds = 0.0;   ///< sum of r0^2 over bonds per volume, d^-1: the affine bulk modulus is k / 9 of it
+  double nodes = bulk_node_density; ///< d^-3
+  double bonds = 0.0;               ///< sum of r0^2 over bonds per volume, d^-1: the affine bulk modulus is k / 9 of it
 };
 
 /// Of a periodic box. \throws std::invalid_argument for a template without a period.

@@ -2,21 +2,19 @@
 #include "calibration/specimen/nonlinear_network.h"
 
 #include "bpm/grain/near_pairs.h"
-#include "bpm/laws/bond.h"
-#include "bpm/laws/contact.h"
 #include "bpm/laws/wall.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace boba::calibration {
 
 namespace {
 
 constexpr double stabilising_share = 0.2; // of the elastic spring, taken off across a bond in compression at most
-constexpr double k3 = 50.0;               // k/d^2, the engine's default
 
 /// The identity without the held components.
 Matrix3 free_components(const std::array<bool, 3>& held) {
@@ -25,9 +23,9 @@ Matrix3 free_components(const std::array<bool, 3>& held) {
 
 } // namespace
 
-NonlinearNetwork::NonlinearNetwork(const GrainTemplate& grain, double alpha)
-    : alpha_(alpha), reference_(grain.position), position_(grain.position), period_(grain.period),
-      volume0_(reference_node_volumes(grain.n_nodes(), grain.bonds)),
+NonlinearNetwork::NonlinearNetwork(const GrainTemplate& grain, double alpha, NetworkLaws laws)
+    : alpha_(alpha), laws_(std::move(laws)), reference_(grain.position), position_(grain.position),
+      period_(grain.period), volume0_(reference_node_volumes(grain.n_nodes(), grain.bonds)),
       held_(grain.n_nodes(), Held{false, false, false}) {
   for (const Bond& bond : grain.bonds) {
     Vector3 cells = Vector3::Zero();
@@ -46,14 +44,14 @@ void NonlinearNetwork::hold(const std::vector<int>& nodes, const Held& component
 }
 
 double NonlinearNetwork::wall_force(int wall, double z, double* stiffness) const {
-  const double distance = wall == 0 ? z - (*walls_)[0] : (*walls_)[1] - z, overlap = 1.0 - 2.0 * distance;
-  if (overlap <= 0.0) {
+  const double distance = wall == 0 ? z - (*walls_)[0] : (*walls_)[1] - z;
+  if (2.0 * distance >= laws_.contact->range()) {
     return 0.0;
   }
   if (stiffness) {
-    *stiffness += 2.0 * (1.0 + 3.0 * k3 * overlap * overlap);
+    *stiffness -= wall_slopes(*laws_.contact, distance, 0.0).by_distance;
   }
-  return boba::wall_force(1.0, k3, 0.0, 1.0, distance, 0.0);
+  return boba::wall_force(*laws_.contact, distance, 0.0);
 }
 
 std::array<double, 2> NonlinearNetwork::wall_loads() const {
@@ -106,15 +104,17 @@ std::vector<NonlinearNetwork::State> NonlinearNetwork::states(const std::vector<
   for (std::size_t b = 0; b < n_bonds_; ++b) {
     const Link& link = links_[b];
     const double root = std::cbrt((volume[link.i] + volume[link.j]) * link.inverse_volume);
-    states[b].force = bond_force(1.0, alpha_, 0.0, states[b].r, link.r0, 1.0 / link.r0, root, 0.0);
-    states[b].many_body = alpha_ * link.inverse_volume / (root * root);
-    states[b].spring = 1.0 + alpha_ / link.r0;
+    const BondState bond{.alpha = alpha_, .r = states[b].r, .r0 = link.r0, .cbrt_ratio = root};
+    const BondSlopes<double> slopes = laws_.bond->slopes(bond);
+    states[b].force = laws_.bond->force(bond);
+    states[b].many_body = slopes.by_cbrt_ratio * link.inverse_volume / (root * root);
+    states[b].spring = -slopes.by_distance;
   }
   for (std::size_t b = n_bonds_; b < links_.size(); ++b) {
-    const double r = states[b].r, overlap = std::max(0.0, 1.0 - r);
-    states[b].force = r < 1.0 ? contact_force(1.0, k3, 0.0, 1.0, r, 0.0) : 0.0;
+    const bool touch = states[b].r < laws_.contact->range();
+    states[b].force = touch ? laws_.contact->force(states[b].r, 0.0) : 0.0;
     states[b].many_body = 0.0;
-    states[b].spring = r < 1.0 ? 1.0 + 3.0 * k3 * overlap * overlap : 0.0;
+    states[b].spring = touch ? -laws_.contact->slopes(states[b].r, 0.0).by_distance : 0.0;
   }
   return states;
 }
@@ -188,12 +188,18 @@ Matrix3 NonlinearNetwork::stress() const {
   return sum / (deformation_.determinant() * period_.value_or(Vector3::Ones()).prod());
 }
 
+double NonlinearNetwork::pair_spring(const Link& link, const State& bond) const {
+  constexpr double lowest_alpha = -0.7; // keeps every spring of the preconditioner positive for r0 > 0.7
+  const BondState state{.alpha = std::max(alpha_, lowest_alpha), .r = bond.r, .r0 = link.r0};
+  return -laws_.bond->slopes(state).by_distance;
+}
+
 void NonlinearNetwork::fill_pair_matrix(Mat matrix) const {
   check(MatZeroEntries(matrix), "MatZeroEntries");
   for (std::size_t b = 0; b < links_.size(); ++b) {
     const Link& link = links_[b];
     const State& bond = linearised_[b];
-    const double spring = b < n_bonds_ ? 1.0 + std::max(alpha_, -0.7) / link.r0 : bond.spring;
+    const double spring = b < n_bonds_ ? pair_spring(link, bond) : bond.spring;
     const double across = std::max(-bond.force / bond.r, -stabilising_share * spring);
     const Matrix3 along = bond.e * bond.e.transpose();
     const Matrix3 block = spring * along + across * (Matrix3::Identity() - along), minus = -block;
@@ -234,7 +240,7 @@ void NonlinearNetwork::find_contacts() {
         [](const Link& link, const NearPair& p) { return std::pair(link.i, link.j) < std::pair(p.i, p.j); });
     return at != links_.begin() + static_cast<std::ptrdiff_t>(n_bonds_) && at->i == pair.i && at->j == pair.j;
   };
-  for (const NearPair& pair : near_pairs(position, 1.0 + contact_margin, period)) {
+  for (const NearPair& pair : near_pairs(position, laws_.contact->range() + contact_margin, period)) {
     if (!bonded(pair)) {
       Vector3 cells = Vector3::Zero();
       if (period) {
@@ -248,7 +254,7 @@ void NonlinearNetwork::find_contacts() {
 int NonlinearNetwork::n_contacts() const {
   const std::vector<State> pairs = states(position_);
   return static_cast<int>(std::count_if(pairs.begin() + static_cast<std::ptrdiff_t>(n_bonds_), pairs.end(),
-                                        [](const State& pair) { return pair.r < 1.0; }));
+                                        [&](const State& pair) { return pair.r < laws_.contact->range(); }));
 }
 
 } // namespace boba::calibration

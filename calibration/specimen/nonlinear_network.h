@@ -2,10 +2,12 @@
 #pragma once
 
 #include "bpm/grain/grain_template.h"
+#include "bpm/laws/plain_laws.h"
 #include "calibration/network/petsc_handle.h"
 
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,17 +17,23 @@ namespace boba::calibration {
 using Vector3 = Eigen::Vector3d;
 using Matrix3 = Eigen::Matrix3d;
 
-/// A network at finite strain under the engine's own bond law (bpm/laws/bond.h) at rest, k = 1.
+/// The laws of a network at rest; those of the engine (bpm/laws) in its units unless told otherwise.
+struct NetworkLaws {
+  std::shared_ptr<const PlainBond> bond = std::make_shared<PlainBondOf<BondLaw>>(BondLaw{});
+  std::shared_ptr<const PlainContact> contact = std::make_shared<PlainContactOf<ContactLaw>>(ContactLaw{});
+};
+
+/// A network at finite strain under the engine's laws at rest, k = 1.
 ///
 /// Positions of the nodes and, for a periodic network, the cell matrix h = F diag(period); some nodes may be held.
 /// `relax` finds the positions at which no free node feels a force: PETSc SNES with the analytic Jacobian. Contacts are
-/// those of unbonded nodes closer than d, and of nodes at two walls across z (bpm/laws/contact.h, wall.h).
+/// those of unbonded nodes within the range of the contact law, and of nodes at two walls across z (bpm/laws/wall.h).
 class NonlinearNetwork {
 public:
   static constexpr double contact_margin = 0.3; ///< d; pairs closer than d + margin are watched during a solve
   using Held = std::array<bool, 3>;
 
-  NonlinearNetwork(const GrainTemplate& grain, double alpha);
+  NonlinearNetwork(const GrainTemplate& grain, double alpha, NetworkLaws laws = {});
 
   int n_nodes() const { return static_cast<int>(position_.size()); }
   const std::vector<Vector3>& position() const { return position_; }
@@ -48,6 +56,8 @@ public:
 
   /// Forces of the bonds on every node at the given positions (k d).
   std::vector<Vector3> forces(const std::vector<Vector3>& position) const;
+  /// Takes the present positions as those about which `force_derivative` is evaluated, walls included.
+  void linearise() { linearise(position_); }
   /// Derivative of the forces along a displacement.
   std::vector<Vector3> force_derivative(const std::vector<Vector3>& displacement) const;
   /// Cauchy stress -(1/Vol) sum f r e e^T over the volume of the deformed cell, tension positive (k/d).
@@ -76,7 +86,7 @@ private:
   struct State { // of each bond at the positions of the last `update`
     Vector3 e;
     double r, force;
-    double many_body; // alpha q^(-2/3) / (V0_i + V0_j); 0 for a contact
+    double many_body; // df/d(q^(1/3)) q^(-2/3) / (V0_i + V0_j); 0 for a contact
     double spring;    // -df/dr at constant volumes
   };
   std::vector<State> states(const std::vector<Vector3>& position) const;
@@ -84,6 +94,8 @@ private:
   /// Force of a wall (0 lower, 1 upper) on a node at height z, away from the wall; adds its slope to *stiffness.
   double wall_force(int wall, double z, double* stiffness) const;
   void fill_pair_matrix(Mat matrix) const;
+  /// Of a bond in the preconditioner, positive for every alpha.
+  double pair_spring(const Link& link, const State& bond) const;
   /// Unbonded pairs closer than d + margin as links without reference length, appended behind the bonds.
   void find_contacts();
   void newton(double tolerance);
@@ -91,6 +103,7 @@ private:
   friend struct SnesGlue;
 
   double alpha_;
+  NetworkLaws laws_;
   std::vector<Vector3> reference_, position_;
   std::optional<Vector3> period_;
   Matrix3 deformation_ = Matrix3::Identity();

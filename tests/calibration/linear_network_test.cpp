@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/dynamics/simulation.h"
 #include "bpm/grain/random.h"
-#include "calibration/network/linear_network.h"
+#include "calibration/network/connected_network.h"
 #include "calibration/network/network_operator.h"
 #include "calibration/network/network_stiffness.h"
 #include "tests/calibration/test_boxes.h"

@@ -60,7 +60,7 @@ TEST(Rigidity, AFloatingNodeIsNamed) {
   auto nodes = cube({0, 0, 0});
   nodes.push_back({2.1, 0.5, 0});
   try {
-    LinearNetwork network(free_network(nodes));
+    connected_network(free_network(nodes));
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("node 8"), std::string::npos) << error.what();

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Included by kernels.cpp only. The law itself is in bpm/laws/bond.h.
+// The bond pass, for any bond law: kernels.cpp makes it for bpm/laws/bond.h, once for each instruction set.
 #pragma once
 
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/forces/kernels/lanes.h"
-#include "bpm/laws/bond.h"
 
+namespace boba::kernels {
 namespace {
-
-using boba::kernels::BlockArraysOf;
-using boba::kernels::BondParameters;
-using boba::kernels::BondRecordOf;
-using boba::kernels::LaneSums;
-using boba::kernels::NetworkOf;
-using boba::kernels::NodeRange;
-using boba::kernels::Virial;
 
 template <class V> struct Triple { V c[3]; };
 
@@ -157,9 +149,9 @@ template <class D> void store_tensor(const Tensor<D>& sum, double (*to)[boba::ma
 
 /// Force over distance of one bond; d and r2 are its separation in units of the coordinates, as is the distance of the
 /// result.
-template <class S, bool many_body, bool damped, class V = typename S::V, class Real = typename S::Real>
+template <class S, bool many_body, bool damped, class Law, class V = typename S::V, class Real = typename S::Real>
 inline V bond_scale(const BondRecordOf<Real>& bond, const Triple<V>& d, V r2, V quantum, const Triple<V>& vi,
-                    const Triple<V>& vj, V volumes, V alpha, Real k, Real gamma) {
+                    const Triple<V>& vj, V volumes, V alpha, const Law& law) {
   const V inverse_r = inverse_sqrt(r2);
   const V r = S::in_diameters(r2 * inverse_r, quantum);
   V normal_velocity{};
@@ -169,9 +161,9 @@ inline V bond_scale(const BondRecordOf<Real>& bond, const Triple<V>& d, V r2, V 
   V force;
   if constexpr (many_body) {
     const V ratio = volumes * bond.inverse_volume;
-    force = boba::bond_force(k, alpha, gamma, r, bond.r0, bond.inverse_r0, cube_root(ratio), normal_velocity);
+    force = law.force(alpha, r, bond.r0, bond.inverse_r0, cube_root(ratio), normal_velocity);
   } else {
-    force = boba::bond_force_pairwise(k, gamma, r, bond.r0, normal_velocity);
+    force = law.pairwise_force(r, bond.r0, bond.inverse_r0, normal_velocity);
   }
   return force * inverse_r;
 }
@@ -189,10 +181,11 @@ inline void add_to_second(Real* f, std::int64_t j, std::int64_t stride, V s, con
 /// One pass over a range of nodes. A node's force is complete when its own bonds are done, since bonds to earlier nodes
 /// were added when those were visited; nobody needs its velocity any more, so it is kicked on the spot. `shared`: other
 /// threads deal with the nodes from own_end on.
-template <class S, bool many_body, bool damped, bool shared, Virial virial, class Coordinate = typename S::Coordinate,
-          class Real = typename S::Real>
-void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a, const BondParameters& p,
-                int lane, const NodeRange& range, std::int64_t& volumes_done, LaneSums& sums) {
+template <class S, bool many_body, bool damped, bool shared, Virial virial, class Law,
+          class Coordinate = typename S::Coordinate, class Real = typename S::Real>
+void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a,
+                const BondParametersOf<Law>& p, int lane, const NodeRange& range, std::int64_t& volumes_done,
+                LaneSums& sums) {
   using V = typename S::V;
   using P = typename S::P;
   constexpr std::int64_t stride = S::stride;
@@ -204,14 +197,14 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
   const V alpha = load_doubles<V>(a.alpha + lane);
   const V q = splat<V>(a.quantum), kick = splat<V>(p.kick), half_kick = splat<V>(p.half_kick), mass = splat<V>(p.mass);
   const V residual_shift = load_doubles<V>(a.residual_shift + lane);
-  const auto k = static_cast<Real>(p.k), gamma = static_cast<Real>(p.gamma);
+  const auto law = p.law.template in<Real>();
   Tensor<DoublesOf<V>> stress{}, kinetic{};
   for (std::int64_t i = range.begin; i < range.end; ++i) {
     if constexpr (many_body) {
       // Volumes run ahead of forces just as far as the bonds of the nodes up to here reach: what one pass reads is
       // still in the cache for the other.
       if (network.reach[i] > volumes_done) {
-        const std::int64_t ahead = boba::kernels::volume_chunk;
+        const std::int64_t ahead = volume_chunk;
         const std::int64_t end =
             network.reach[i] + ahead < network.n_nodes ? network.reach[i] + ahead : network.n_nodes;
         node_volumes<S, false>(network, x, volume, a.quantum, volumes_done, end, network.n_nodes);
@@ -240,7 +233,7 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
       if constexpr (many_body) {
         volumes = volume_i + load<V>(volume + j * stride);
       }
-      const V s = bond_scale<S, many_body, damped>(bond, d, r2, q, vi, vj, volumes, alpha, k, gamma);
+      const V s = bond_scale<S, many_body, damped>(bond, d, r2, q, vi, vj, volumes, alpha, law);
       for (int c = 0; c < 3; ++c) {
         fi.c[c] = multiply_add(s, d.c[c], fi.c[c]);
       }
@@ -286,11 +279,12 @@ template <class Call> inline void with_constants(bool x, bool y, Call&& call) {
   with_constant(x, [&](auto is_x) { with_constant(y, [&](auto is_y) { call(is_x, is_y); }); });
 }
 
-template <class Coordinate, class Real>
-void bond_forces(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a, const BondParameters& p,
-                 bool many_body, Virial virial, const NodeRange& range, std::int64_t& volumes_done, LaneSums& sums) {
+template <class Coordinate, class Real, class Law>
+void bond_forces(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a,
+                 const BondParametersOf<Law>& p, bool many_body, Virial virial, const NodeRange& range,
+                 std::int64_t& volumes_done, LaneSums& sums) {
   const std::int64_t done_before = volumes_done; // the same for every register of lanes
-  with_constants(many_body, p.gamma != 0.0, [&](auto is_many_body, auto is_damped) {
+  with_constants(many_body, p.law.is_damped(), [&](auto is_many_body, auto is_damped) {
     with_constant(range.own_end < network.n_nodes, [&](auto is_shared) {
       for_lanes<Coordinate>(a.n_lanes, [&](int lane, auto storage) {
         using S = decltype(storage);
@@ -312,15 +306,15 @@ void bond_forces(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate,
   });
 }
 
-template <class S, bool many_body, bool damped, class Coordinate = typename S::Coordinate,
+template <class S, bool many_body, bool damped, class Law, class Coordinate = typename S::Coordinate,
           class Real = typename S::Real>
 void lanes_from_before(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a,
-                       const BondParameters& p, int lane, const NodeRange& range) {
+                       const BondParametersOf<Law>& p, int lane, const NodeRange& range) {
   using V = typename S::V;
   using P = typename S::P;
   constexpr std::int64_t stride = S::stride;
   const V alpha = load_doubles<V>(a.alpha + lane), q = splat<V>(a.quantum);
-  const auto k = static_cast<Real>(p.k), gamma = static_cast<Real>(p.gamma);
+  const auto law = p.law.template in<Real>();
   Real* f = a.f + lane;
   for_each_bond_from_before(network, range, [&](std::int64_t i, std::int64_t b) {
     const std::int64_t j = network.bonds[b].other;
@@ -334,15 +328,15 @@ void lanes_from_before(const NetworkOf<Real>& network, const BlockArraysOf<Coord
     if constexpr (many_body) {
       volumes = load<V>(a.volume + lane + i * stride) + load<V>(a.volume + lane + j * stride);
     }
-    const V s = bond_scale<S, many_body, damped>(network.bonds[b], d, dot(d, d), q, vi, vj, volumes, alpha, k, gamma);
+    const V s = bond_scale<S, many_body, damped>(network.bonds[b], d, dot(d, d), q, vi, vj, volumes, alpha, law);
     add_to_second(f, j, stride, s, d);
   });
 }
 
-template <class Coordinate, class Real>
+template <class Coordinate, class Real, class Law>
 void bond_forces_from_before(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a,
-                             const BondParameters& p, bool many_body, const NodeRange& range) {
-  with_constants(many_body, p.gamma != 0.0, [&](auto is_many_body, auto is_damped) {
+                             const BondParametersOf<Law>& p, bool many_body, const NodeRange& range) {
+  with_constants(many_body, p.law.is_damped(), [&](auto is_many_body, auto is_damped) {
     for_lanes<Coordinate>(a.n_lanes, [&](int lane, auto storage) {
       lanes_from_before<decltype(storage), is_many_body.value, is_damped.value>(network, a, p, lane, range);
     });
@@ -350,3 +344,4 @@ void bond_forces_from_before(const NetworkOf<Real>& network, const BlockArraysOf
 }
 
 } // namespace
+} // namespace boba::kernels

@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Included by kernels.cpp only. The law itself is in bpm/laws/contact.h.
+// The contact pass, for any contact law: kernels.cpp makes it for those of bpm/laws, once for each instruction set; a
+// program with a law of its own makes it for that (outside_contact_law.h).
 #pragma once
 
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/forces/kernels/lanes.h"
-#include "bpm/laws/contact.h"
 
 #include <cstdint>
 #include <type_traits>
 
+namespace boba::kernels {
 namespace {
-
-using boba::kernels::ContactCandidates;
-using boba::kernels::ContactNode;
-using boba::kernels::ContactParameters;
-using boba::kernels::ContactSums;
-using boba::kernels::NodePair;
-using boba::kernels::Touch;
 
 template <class Coordinate, class Real>
 void collect_nodes(const std::int32_t* nodes, std::int64_t n, const Coordinate* x, const Real* v, int stride,
@@ -48,7 +42,7 @@ inline void prefetch_ahead(const ContactCandidates& c, std::int64_t e) {
 using NodeRow = Vector<double, 8>;
 
 /// Writes down the candidates closer than sqrt(reach2), in order and without a branch, and returns their number.
-std::int64_t near_candidates(const ContactCandidates& c, double reach2, NodePair* near) {
+inline std::int64_t near_candidates(const ContactCandidates& c, double reach2, NodePair* near) {
   std::int64_t n = 0;
   for (std::int64_t e = 0; e < c.n; ++e) {
     prefetch_ahead(c, e);
@@ -65,10 +59,10 @@ std::int64_t near_candidates(const ContactCandidates& c, double reach2, NodePair
 }
 
 /// Writes down the candidates that touch, and x_i - x_j, v_i - v_j of each as a row, in order and without a branch.
-inline std::int64_t touching_rows(const ContactCandidates& c, double diameter, ContactNode* rows, Touch* touches) {
+inline std::int64_t touching_rows(const ContactCandidates& c, double range, ContactNode* rows, Touch* touches) {
   const NodeRow shift = {c.shift[0],          c.shift[1],          c.shift[2], c.shift_velocity[0],
                          c.shift_velocity[1], c.shift_velocity[2], 0.0,        0.0};
-  const double reach2 = diameter * diameter;
+  const double reach2 = range * range;
   std::int64_t n = 0;
   for (std::int64_t e = 0; e < c.n; ++e) {
     prefetch_ahead(c, e);
@@ -81,28 +75,12 @@ inline std::int64_t touching_rows(const ContactCandidates& c, double diameter, C
   return n;
 }
 
-/// Hertz's law lane by lane: spheres of one node have few contacts. Rounding may put a distance just beyond touch.
-inline Wide hertz_forces(const ContactParameters& p, Wide r, Wide normal_velocity) {
-  Wide f{};
-  for (int l = 0; l < native_lanes; ++l) {
-    const double at = r[l] < p.diameter ? r[l] : p.diameter;
-    f[l] = boba::hertz_force(p.hertz_modulus, p.gamma, p.diameter, at, static_cast<double>(normal_velocity[l]));
-  }
-  return f;
-}
-inline Wide hertz_energies(const ContactParameters& p, Wide r) {
-  Wide energy{};
-  for (int l = 0; l < native_lanes; ++l) {
-    energy[l] = boba::hertz_energy(p.hertz_modulus, p.diameter, r[l] < p.diameter ? r[l] : p.diameter);
-  }
-  return energy;
-}
-
 /// Forces of as many touches as a register holds, and their share of the sums.
 struct TouchSums {
   Wide virial[6]{}, smallest_r2, potential{};
 };
-inline void evaluate_touches(const ContactNode* rows, const ContactParameters& p, Touch* touches, TouchSums& sums) {
+template <class Law>
+inline void evaluate_touches(const ContactNode* rows, const Law& law, Touch* touches, TouchSums& sums) {
   Wide d[3], approach{};
   for (int l = 0; l < native_lanes; ++l) {
     for (int c = 0; c < 3; ++c) {
@@ -112,10 +90,7 @@ inline void evaluate_touches(const ContactNode* rows, const ContactParameters& p
   }
   const Wide r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
   const Wide inverse_r = inverse_sqrt(r2), r = r2 * inverse_r;
-  const bool hertz = p.hertz_modulus > 0.0;
-  const Wide s = (hertz ? hertz_forces(p, r, approach * inverse_r)
-                        : boba::contact_force(p.k, p.k3, p.gamma, p.diameter, r, approach * inverse_r)) *
-                 inverse_r;
+  const Wide s = law.force(r, approach * inverse_r) * inverse_r;
   const Wide force[3] = {s * d[0], s * d[1], s * d[2]};
   for (int l = 0; l < native_lanes; ++l) {
     for (int c = 0; c < 3; ++c) {
@@ -128,23 +103,24 @@ inline void evaluate_touches(const ContactNode* rows, const ContactParameters& p
     sums.virial[c] += terms[c];
   }
   sums.smallest_r2 = r2 < sums.smallest_r2 ? r2 : sums.smallest_r2;
-  sums.potential += hertz ? hertz_energies(p, r) : boba::contact_energy(p.k, p.k3, p.diameter, r);
+  sums.potential += law.energy(r);
 }
 
 /// The sums follow from the touches alone, whatever other candidates there were.
-std::int64_t contact_forces(const ContactCandidates& candidates, const ContactParameters& p, ContactNode* rows,
-                            Touch* touches, ContactSums& sums) {
-  const std::int64_t n = touching_rows(candidates, p.diameter, rows, touches);
+template <class Law>
+std::int64_t contact_forces(const ContactCandidates& candidates, const Law& law, ContactNode* rows, Touch* touches,
+                            ContactSums& sums) {
+  const std::int64_t n = touching_rows(candidates, law.range(), rows, touches);
   if (n == 0) {
     return 0;
   }
   for (std::int64_t t = n; t % native_lanes != 0; ++t) { // nodes that just do not touch fill the last register
-    rows[t] = {{p.diameter, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0}};
+    rows[t] = {{law.range(), 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0}};
   }
   TouchSums wide;
-  wide.smallest_r2 = splat<Wide>(p.diameter * p.diameter);
+  wide.smallest_r2 = splat<Wide>(law.range() * law.range());
   for (std::int64_t t = 0; t < n; t += native_lanes) {
-    evaluate_touches(rows + t, p, touches + t, wide);
+    evaluate_touches(rows + t, law, touches + t, wide);
   }
   for (int c = 0; c < 6; ++c) {
     sums.virial[c] = sum_of(wide.virial[c]);
@@ -166,3 +142,4 @@ template <class Real> void add_touches(const Touch* touches, std::int64_t n, dou
 }
 
 } // namespace
+} // namespace boba::kernels

@@ -7,10 +7,8 @@
 
 #include <cstdint>
 
+namespace boba::kernels {
 namespace {
-
-using boba::kernels::Drift;
-using boba::kernels::DriftResult;
 
 /// The whole number below x, lane by lane.
 template <class I, class V> inline I rounded_down(V x) {
@@ -112,3 +110,4 @@ DriftResult drift_block(Coordinate* x, const Real* v, int n_nodes, int n_lanes, 
 }
 
 } // namespace
+} // namespace boba::kernels

@@ -5,11 +5,8 @@
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/forces/kernels/lanes.h"
 
+namespace boba::kernels {
 namespace {
-
-using boba::kernels::FrameArraysOf;
-using boba::kernels::FrameFit;
-using boba::kernels::LaneFrames;
 
 template <class V> inline V load_floats(const float* from) {
   return converted<V>(load<Vector<float, lanes_of<V>>>(from));
@@ -112,3 +109,4 @@ std::int64_t frame_residuals(const FrameArraysOf<Coordinate>& arrays, const Lane
 }
 
 } // namespace
+} // namespace boba::kernels

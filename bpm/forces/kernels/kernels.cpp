@@ -15,15 +15,16 @@ namespace boba::kernels {
 
 extern const KernelTable BOBA_KERNEL_TABLE = {
     BOBA_STRINGIFY(BOBA_KERNEL_ISA),
-    {&volumes_of_nodes<double, double>, &bond_forces<double, double>, &bond_forces_from_before<double, double>,
-     &drift_block<double, double>, &collect_nodes<double, double>, &add_touches<double>, &fit_frames<double>,
-     &frame_residuals<double>},
-    {&volumes_of_nodes<std::int32_t, float>, &bond_forces<std::int32_t, float>,
-     &bond_forces_from_before<std::int32_t, float>, &drift_block<std::int32_t, float>,
+    {&volumes_of_nodes<double, double>, &bond_forces<double, double, BondLaw>,
+     &bond_forces_from_before<double, double, BondLaw>, &drift_block<double, double>, &collect_nodes<double, double>,
+     &add_touches<double>, &fit_frames<double>, &frame_residuals<double>},
+    {&volumes_of_nodes<std::int32_t, float>, &bond_forces<std::int32_t, float, BondLaw>,
+     &bond_forces_from_before<std::int32_t, float, BondLaw>, &drift_block<std::int32_t, float>,
      &collect_nodes<std::int32_t, float>, &add_touches<float>, &fit_frames<std::int32_t>,
      &frame_residuals<std::int32_t>},
     &near_candidates,
-    &contact_forces,
+    &contact_forces<ContactLaw>,
+    &contact_forces<HertzLaw>,
     &near_places};
 
 } // namespace boba::kernels

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/laws/bond.h"
+#include "bpm/laws/contact.h"
+#include "bpm/laws/hertz.h"
 #include "bpm/packing/max_lanes.h"
 
 #include <compare>
@@ -60,14 +63,17 @@ struct NodeRange {
   int own_end; ///< bonds to nodes from here on are another's to add there
 };
 
-struct BondParameters {
-  double k, gamma;
+/// What a pass over the bonds needs to know beside the network and its state. `Law` is a bond law with double
+/// constants, such as BondLaw.
+template <class Law> struct BondParametersOf {
+  Law law;
   double kick;      ///< v += kick f, once a node's force is complete: dt/m, dt/2m at the start, 0 to look only
   double half_kick; ///< full-step velocity = v + half_kick f, for the kinetic part of the stress
   double mass;
   /// Streaming velocity along x, not counted as kinetic: residual . x + the lane's shift, x as the arrays hold it.
   double residual[3];
 };
+using BondParameters = BondParametersOf<BondLaw>;
 
 /// How much of the virial and the kinetic tensor a pass sums up.
 enum class Virial { none, trace, full };
@@ -130,13 +136,8 @@ struct ContactCandidates {
   double shift[3], shift_velocity[3]; ///< what to add to the second grain's positions and velocities
 };
 
-struct ContactParameters {
-  double k, k3, gamma, diameter;
-  double hertz_modulus; ///< above 0: Hertz's law instead of k and k3
-};
-
 /// Touches and rows that a loop over n candidates may write: one beyond, rounded up to full registers.
-inline constexpr std::int64_t touch_room(std::int64_t n_candidates) {
+inline constexpr std::int64_t touch_capacity(std::int64_t n_candidates) {
   return n_candidates + 16;
 }
 
@@ -205,7 +206,14 @@ template <class Coordinate, class Real> struct LaneKernels {
                                   std::int32_t* far);
 };
 
-inline constexpr int found_room = 16;
+/// Numbers that near_places may write beyond those it returns.
+inline constexpr int near_padding = 16;
+
+/// Writes the contacts among the candidates into `touches` and returns their number. `rows` is scratch; both have
+/// room for touch_capacity(candidates).
+template <class Law>
+using ContactKernel = std::int64_t (*)(const ContactCandidates&, const Law&, ContactNode* rows, Touch* touches,
+                                       ContactSums&);
 
 struct KernelTable {
   const char* name; ///< "avx512", "avx2" or "baseline"
@@ -214,13 +222,11 @@ struct KernelTable {
   /// Writes the candidates closer than sqrt(reach2) into `near` (room for one more than all of them), in their order,
   /// and returns their number.
   std::int64_t (*near_candidates)(const ContactCandidates&, double reach2, NodePair* near);
-  /// Writes the contacts among the candidates into `touches` and returns their number. `rows` is scratch; both have
-  /// room for touch_room(candidates).
-  std::int64_t (*contacts)(const ContactCandidates&, const ContactParameters&, ContactNode* rows, Touch* touches,
-                           ContactSums&);
+  ContactKernel<ContactLaw> contacts;
+  ContactKernel<HertzLaw> hertz_contacts;
   /// Writes the places of some ranges closer than sqrt(reach2) to p into `found`, range by range and ascending, and
-  /// returns their number. `found` has room for found_room more numbers than there are places. Coordinates are rounded
-  /// to floats.
+  /// returns their number. `found` has room for near_padding more numbers than there are places. Coordinates are
+  /// rounded to floats.
   std::int32_t (*near_places)(const SortedNodes&, const PlaceRange* ranges, int n_ranges, const double* p,
                               double reach2, std::int32_t* found);
 };

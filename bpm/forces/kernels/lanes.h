@@ -14,6 +14,7 @@
 #include <immintrin.h>
 #endif
 
+namespace boba::kernels {
 namespace {
 
 #if defined(__AVX512F__)
@@ -170,7 +171,7 @@ inline Wide inverse_sqrt(Wide x) {
   const Wide h = subtract_product(splat<Wide>(1.0), x * y, y);
   return multiply_add(y, h * multiply_add(h, splat<Wide>(0.375), splat<Wide>(0.5)), y);
 #else
-  Wide y;
+  Wide y{};
   for (int l = 0; l < native_lanes; ++l) {
     y[l] = 1.0 / std::sqrt(x[l]);
   }
@@ -192,7 +193,7 @@ inline WideSingle inverse_sqrt(WideSingle x) {
 #elif defined(__AVX2__)
   return improved_inverse_sqrt(x, (WideSingle)_mm256_rsqrt_ps((__m256)x));
 #else
-  WideSingle y;
+  WideSingle y{};
   for (int l = 0; l < 2 * native_lanes; ++l) {
     y[l] = 1.0f / std::sqrt(x[l]);
   }
@@ -203,7 +204,7 @@ inline WideFloat inverse_sqrt(WideFloat x) {
 #if defined(__AVX512F__)
   return improved_inverse_sqrt(x, (WideFloat)_mm256_maskz_rsqrt14_ps(0xff, (__m256)x));
 #else
-  WideFloat y;
+  WideFloat y{};
   for (int l = 0; l < native_lanes; ++l) {
     y[l] = 1.0f / std::sqrt(x[l]);
   }
@@ -377,3 +378,4 @@ template <class V> inline void store_doubles(double* to, V value) {
 }
 
 } // namespace
+} // namespace boba::kernels

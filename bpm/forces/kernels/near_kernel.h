@@ -5,10 +5,8 @@
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/forces/kernels/lanes.h"
 
+namespace boba::kernels {
 namespace {
-
-using boba::kernels::PlaceRange;
-using boba::kernels::SortedNodes;
 
 #if !defined(__AVX512F__)
 /// Branch-free: every place is written, and the count moves on only past those that are near.
@@ -29,7 +27,7 @@ std::int32_t near_places(const SortedNodes& nodes, const PlaceRange* ranges, int
 #else
 std::int32_t near_places(const SortedNodes& nodes, const PlaceRange* ranges, int n_ranges, const double* p,
                          double reach2, std::int32_t* found) {
-  constexpr int width = boba::kernels::found_room;
+  constexpr int width = near_padding;
   const __m512 px = _mm512_set1_ps(static_cast<float>(p[0]));
   const __m512 py = _mm512_set1_ps(static_cast<float>(p[1]));
   const __m512 pz = _mm512_set1_ps(static_cast<float>(p[2]));
@@ -55,3 +53,4 @@ std::int32_t near_places(const SortedNodes& nodes, const PlaceRange* ranges, int
 #endif
 
 } // namespace
+} // namespace boba::kernels

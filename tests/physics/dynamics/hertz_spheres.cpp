@@ -12,7 +12,7 @@ namespace boba::test {
 namespace {
 
 constexpr double E = 3.0;
-const Material rigid = {.hertz_modulus = E};
+const Material rigid = {.contact = "hertz", .contact_parameters = {E}};
 
 /// Spheres of diameter 1 on a simple cubic lattice, n^3 of them, in a cell that leans by whole lattice vectors.
 Packing cubic_lattice(int n, double spacing) {

@@ -1,29 +1,61 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "calibration/network/linear_network.h"
+#include "bpm/grain/linear_network.h"
 
-#include "bpm/grain/bond_network.h"
 #include "bpm/grain/near_pairs.h"
 
 #include <algorithm>
-#include <fmt/format.h>
+#include <cmath>
+#include <functional>
 #include <stdexcept>
 
-namespace boba::calibration {
+namespace boba {
 
-LinearNetwork::LinearNetwork(const GrainTemplate& grain)
-    : position_(grain.position), period_(grain.period), volume_(grain.reference_volume) {
-  if (const auto reason = floating_part(grain)) {
-    throw std::invalid_argument("the network is not rigid: " + *reason);
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Values at alpha = 0 and their changes per alpha.
+struct Coefficients {
+  double spring[2], swelling[2], damping;
+};
+
+Coefficients coefficients_of(const PlainBond& law, double r0) {
+  const auto at = [&](double alpha) { return law.slopes({.alpha = alpha, .r = r0, .r0 = r0}); };
+  const BondSlopes<double> zero = at(0.0), one = at(1.0), two = at(2.0);
+  const auto is_affine = [](double f0, double f1, double f2) {
+    return std::abs(f2 - 2.0 * f1 + f0) <= 1e-12 * (std::abs(f0) + std::abs(f1) + std::abs(f2));
+  };
+  if (!is_affine(zero.by_distance, one.by_distance, two.by_distance) ||
+      !is_affine(zero.by_cbrt_ratio, one.by_cbrt_ratio, two.by_cbrt_ratio)) {
+    throw std::invalid_argument("linear network: the derivatives of the bond law are not affine in alpha");
   }
+  return {{-zero.by_distance, zero.by_distance - one.by_distance},
+          {zero.by_cbrt_ratio, one.by_cbrt_ratio - zero.by_cbrt_ratio},
+          -zero.by_normal_velocity};
+}
+
+} // namespace
+
+LinearNetwork::LinearNetwork(const GrainTemplate& grain, const PlainBond& law)
+    : position_(grain.position), period_(grain.period), volume_(grain.reference_volume) {
   const std::vector<double> node_volume = reference_node_volumes(grain.n_nodes(), grain.bonds);
   bonds_.reserve(grain.bonds.size());
+  damping_.reserve(grain.bonds.size());
   for (const Bond& bond : grain.bonds) {
-    Vector3 difference = position_[bond.i] - position_[bond.j];
+    Vector3d difference = position_[bond.i] - position_[bond.j];
     if (period_) {
       difference = wrapped(difference, *period_);
     }
-    bonds_.push_back(
-        {bond.i, bond.j, difference / bond.r0, bond.r0, 1.0 / (node_volume[bond.i] + node_volume[bond.j])});
+    const Coefficients c = coefficients_of(law, bond.r0);
+    const double volumes = node_volume[bond.i] + node_volume[bond.j];
+    bonds_.push_back({bond.i,
+                      bond.j,
+                      difference.normalized(),
+                      bond.r0,
+                      {c.spring[0], c.spring[1]},
+                      {c.swelling[0] / volumes, c.swelling[1] / volumes}});
+    damping_.push_back(c.damping);
   }
 }
 
@@ -37,7 +69,7 @@ std::vector<double> LinearNetwork::stretch(const double* u) const {
   return s;
 }
 
-std::vector<double> LinearNetwork::affine_stretch(const Matrix3& strain) const {
+std::vector<double> LinearNetwork::affine_stretch(const Matrix3d& strain) const {
   std::vector<double> s(bonds_.size());
   std::transform(bonds_.begin(), bonds_.end(), s.begin(),
                  [&](const LinearBond& bond) { return bond.r0 * bond.e.dot(strain * bond.e); });
@@ -54,7 +86,8 @@ std::vector<double> LinearNetwork::tension(const std::vector<double>& s, double 
   std::vector<double> t(bonds_.size());
   for (std::size_t b = 0; b < bonds_.size(); ++b) {
     const LinearBond& bond = bonds_[b];
-    t[b] = s[b] + alpha * (s[b] / bond.r0 - (q[bond.i] + q[bond.j]) * bond.inverse_volume);
+    t[b] = (bond.spring[0] + alpha * bond.spring[1]) * s[b] -
+           (bond.swelling[0] + alpha * bond.swelling[1]) * (q[bond.i] + q[bond.j]);
   }
   return t;
 }
@@ -86,8 +119,8 @@ void LinearNetwork::multiply(const double* u, double alpha, double* f) const {
   for (std::size_t b = 0; b < bonds_.size(); ++b) {
     const LinearBond& bond = bonds_[b];
     const double s = scratch_stretch_[b];
-    const double many_body = (scratch_sum_[bond.i] + scratch_sum_[bond.j]) * bond.inverse_volume;
-    const double t = s + alpha * (s / bond.r0 - many_body);
+    const double t = (bond.spring[0] + alpha * bond.spring[1]) * s -
+                     (bond.swelling[0] + alpha * bond.swelling[1]) * (scratch_sum_[bond.i] + scratch_sum_[bond.j]);
     double *fi = f + 3 * bond.i, *fj = f + 3 * bond.j;
     for (int c = 0; c < 3; ++c) {
       fi[c] += t * bond.e[c];
@@ -96,12 +129,19 @@ void LinearNetwork::multiply(const double* u, double alpha, double* f) const {
   }
 }
 
-Matrix3 LinearNetwork::stress(const std::vector<double>& t) const {
-  Matrix3 sum = Matrix3::Zero();
+void LinearNetwork::damp(const double* v, double* f) const {
+  std::vector<double> t = stretch(v);
+  std::transform(t.begin(), t.end(), damping_.begin(), t.begin(), std::multiplies<>());
+  std::fill(f, f + 3 * position_.size(), 0.0);
+  add_nodal(t, f);
+}
+
+Matrix3d LinearNetwork::stress(const std::vector<double>& t) const {
+  Matrix3d sum = Matrix3d::Zero();
   for (std::size_t b = 0; b < bonds_.size(); ++b) {
     sum += (t[b] * bonds_[b].r0) * bonds_[b].e * bonds_[b].e.transpose();
   }
   return sum / volume_;
 }
 
-} // namespace boba::calibration
+} // namespace boba
