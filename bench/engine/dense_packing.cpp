@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/engine/dense_packing.h"
 
+#include "bpm/archive/archive.h"
 #include "bpm/dynamics/stepper.h"
 #include "bpm/dynamics/take_snapshot.h"
 #include "bpm/grain/template_cache.h"
@@ -60,16 +61,16 @@ Snapshot compressed_and_sheared(const Packing& loose, double pressure) {
   return take_snapshot(stepper.moving(), {.velocity = true});
 }
 
-std::vector<double> flat(const std::vector<Vector3>& vectors) {
-  return {vectors.front().data(), vectors.front().data() + 3 * vectors.size()};
-}
-
-void copy_into(std::vector<Vector3>& vectors, const std::vector<double>& numbers) {
-  std::copy(numbers.begin(), numbers.end(), vectors.front().data());
+void archive_state(Archive& archive, Packing& packing) {
+  Matrix3 cell = packing.box.h();
+  archive.field("position", packing.position);
+  archive.field("velocity", packing.velocity);
+  archive.field("cell", cell);
+  packing.box.set_h(cell);
 }
 
 /// The state in a folder of the cache; nothing when there is none, or none that this version reads.
-std::optional<CheckpointData> kept_in(const std::filesystem::path& store) {
+std::optional<SavedState> kept_in(const std::filesystem::path& store) {
   if (!std::filesystem::exists(store)) {
     return std::nullopt;
   }
@@ -86,20 +87,21 @@ Packing dense_packing(int n_grains, int n_nodes, double alpha) {
   Packing packing = loose_packing(n_grains, n_nodes, alpha);
   const std::filesystem::path store =
       default_cache_directory() / fmt::format("dense-{}x{}-alpha{}", n_grains, n_nodes, alpha);
-  std::optional<CheckpointData> kept = kept_in(store);
+  const std::optional<SavedState> kept = kept_in(store);
   if (!kept) {
     const Snapshot dense = compressed_and_sheared(packing, dense_pressure(alpha));
-    CheckpointData data;
-    data.real["position"] = flat(dense.position);
-    data.real["velocity"] = flat(dense.velocity);
-    data.real["cell"] = {dense.box.h().data(), dense.box.h().data() + 9};
+    packing.position = dense.position;
+    packing.velocity = dense.velocity;
+    packing.box.set_h(dense.box.h());
+    SavedState data;
+    Archive archive = Archive::saving_to(data);
+    archive_state(archive, packing);
     std::filesystem::create_directories(store);
     write_checkpoint(store, data);
-    kept = std::move(data);
+  } else {
+    Archive archive = Archive::reading_from(*kept);
+    archive_state(archive, packing);
   }
-  copy_into(packing.position, kept->real.at("position"));
-  copy_into(packing.velocity, kept->real.at("velocity"));
-  packing.box.set_h(Eigen::Map<const Matrix3>(kept->real.at("cell").data()));
   return packing;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Seconds that a trajectory frame and a checkpoint take on the ranks it is started on, and each rank's largest memory.
 // The packing is a grid of grains without bonds; no step is made. Prints one line of JSON.
+#include "bpm/archive/archive.h"
 #include "bpm/dynamics/motion_archive.h"
 #include "bpm/dynamics/share_state.h"
 #include "bpm/dynamics/stepper.h"
@@ -108,13 +109,14 @@ double frame_seconds(const Arguments& a, const Stepper& stepper) {
   });
 }
 
-double checkpoint_seconds(const Arguments& a, const Stepper& stepper) {
+double checkpoint_seconds(const Arguments& a, Stepper& stepper) {
   const std::vector<std::int64_t> first_node = stepper.packing().first_nodes();
   return median_seconds(a.repeats, stepper.ranks(), [&](int) {
     SavedState state;
-    save_motion(stepper.moving(), state);
-    write_checkpoint(a.folder, {{}, std::move(state.real), std::move(state.integer)}, stepper.ranks(),
-                     {{entries_of_nodes.begin(), entries_of_nodes.end()},
+    Archive archive = Archive::saving_to(state);
+    archive.inside("simulation", [&] { archive_motion(archive, stepper.moving()); });
+    write_checkpoint(a.folder, state, stepper.ranks(),
+                     {{node_fields.begin(), node_fields.end()},
                       node_runs(stepper.layout().grains(), first_node),
                       first_node.back()});
   });

@@ -32,8 +32,7 @@ struct ResumeArguments {
 
 /// The same numbers come only from the same instruction set.
 void check_instruction_set(const LatestCheckpoint& checkpoint, bool allow_other) {
-  const auto at = checkpoint.data.text.find("instruction_set");
-  const std::string then = at == checkpoint.data.text.end() ? "unknown" : at->second;
+  const std::string then = run_record(checkpoint).instruction_set;
   const std::string now = kernels::best_table().name;
   if (then != now && !allow_other) {
     throw InputError(
@@ -53,11 +52,14 @@ std::shared_ptr<const FolderLock> lock_of_run(const OutputFolder& folder) {
 
 /// What the checkpoint points back to must be there. Returns what is missing, once the user accepts that.
 std::vector<std::string> check_output(const LatestCheckpoint& checkpoint, const OutputFolder& folder, bool accept) {
-  const auto at = checkpoint.data.text.find(output_record_name);
-  std::vector<std::string> gaps;
-  if (at != checkpoint.data.text.end()) {
-    gaps = missing_output(folder, at->second);
+  std::string record;
+  try {
+    Archive archive = Archive::reading_from(checkpoint.data);
+    archive.field(output_record_name, record);
+  } catch (const SavedStateError& error) {
+    throw InputError(fmt::format("{}: the run cannot continue: {}", checkpoint.path.string(), error.what()));
   }
+  const std::vector<std::string> gaps = missing_output(folder, record);
   if (!gaps.empty() && !accept) {
     throw InputError(fmt::format("{}: the run cannot be continued without gaps: {}; --accept-gaps continues it all "
                                  "the same",

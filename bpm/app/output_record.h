@@ -11,7 +11,7 @@
 namespace boba {
 
 /// Under this name a checkpoint keeps the record below.
-inline const std::string output_record_name = "output/files";
+inline const std::string output_record_name = "output.files";
 
 /// What a run's files hold when a checkpoint is written, so that a run which continues from it finds gaps.
 ///

@@ -10,6 +10,7 @@
 #include "bpm/app/stage_summary.h"
 #include "bpm/app/stop_request.h"
 #include "bpm/app/version.h"
+#include "bpm/archive/saved_state.h"
 #include "bpm/io/naming.h"
 #include "bpm/packing/packing_numbers.h"
 
@@ -65,21 +66,22 @@ public:
         progress_(setup_.modulus.value_or(0.0), numbers_.n_nodes, setup_.quiet, ranks),
         output_record_(setup_.folder, files_of_run(setup_.scene)) {
     if (setup_.restart) {
-      naming(setup_.restart->file, [&] { simulation_.restore(setup_.restart->state); });
-      setup_.restart->state = {};
+      take_up(*setup_.restart);
+    } else {
+      writers_ = open_writers(setup_, simulation_, numbers_);
     }
-    writers_ = open_writers(setup_, simulation_, numbers_);
     const OutputPlan& plan = setup_.scene.output;
     checkpoints_ = std::make_unique<CheckpointObserver>(
         setup_.folder.checkpoints(), constant_part(setup_, simulation_), plan.checkpoint_seconds,
         Schedule({std::nullopt, plan.checkpoint_time}, StrainPath(simulation_.strain()), simulation_.time()),
-        [this](CheckpointData& data) {
+        [this](SavedState& data) {
           writers_.wait(); // what a checkpoint points back to is on disk
           store_writers(data, writers_);
           if (ranks_.is_root()) {
-            data.text[output_record_name] =
+            data[output_record_name] = {
                 output_record_.text(simulation_.step(), writers_.trajectory ? writers_.trajectory->n_frames() : 0,
-                                    writers_.trajectory ? writers_.frames.front()->last_step() : -1);
+                                    writers_.trajectory ? writers_.frames.front()->last_step() : -1),
+                {}};
           }
         });
   }
@@ -89,6 +91,9 @@ public:
     introduce();
     try {
       return run_stages();
+    } catch (const SavedStateError& error) {
+      progress_.finish();
+      throw InputError(fmt::format("{}: the run cannot continue: {}", setup_.restart->file, error.what()));
     } catch (const std::exception& error) {
       progress_.finish();
       log_.last_words(error.what(), "the last checkpoints are kept in " + setup_.folder.checkpoints().string());
@@ -101,6 +106,18 @@ private:
     SimulationOptions options = setup_.scene.options;
     options.ranks = &ranks;
     return options;
+  }
+
+  /// The state and the files of the run that continues.
+  void take_up(RunSetup::Restart& restart) {
+    try {
+      naming(restart.file, [&] { simulation_.restore(restart.state); });
+      std::erase_if(restart.state, [](const auto& field) { return !field.first.starts_with("output."); });
+      writers_ = open_writers(setup_, simulation_, numbers_);
+      restart.state = {};
+    } catch (const SavedStateError& error) {
+      throw InputError(fmt::format("{}: the run cannot continue: {}", restart.file, error.what()));
+    }
   }
 
   /// Returns the file, on rank 0. What goes wrong there, all hear of.

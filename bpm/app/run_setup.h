@@ -26,12 +26,9 @@ struct RunSetup {
 
   /// Set when the run goes on from a checkpoint.
   struct Restart {
-    SavedState state;
-    std::int64_t step = 0;
+    SavedState state;      ///< the whole checkpoint
+    std::int64_t step = 0; ///< of the simulation
     std::string file;
-    std::vector<std::int64_t> last_steps; ///< written last: by the table, then by each writer of frames
-    std::vector<double> strain_path;      ///< of StrainPath::saved; empty in checkpoints of version 0.1
-    std::vector<double> motion;           ///< of MeasureTables::save_motion; empty when motion is not measured
   };
   std::optional<Restart> restart;
 

@@ -7,6 +7,7 @@
 #include "bpm/io/vtk.h"
 
 #include <filesystem>
+#include <fmt/format.h>
 #include <optional>
 
 namespace boba {
@@ -21,9 +22,28 @@ std::string with_overrides(const Scene& scene) {
   return text;
 }
 
-/// Step that a writer (the table is the first) had written last at the checkpoint; -1 for nothing.
-std::int64_t last_step_of(const RunSetup& setup, std::size_t writer) {
-  return setup.restart && writer < setup.restart->last_steps.size() ? setup.restart->last_steps[writer] : -1;
+/// What checkpoints call the writers.
+const std::string table_name = "table", trajectory_name = "trajectory", dump_name = "dump", vtk_name = "vtk",
+                  motion_name = "motion";
+
+/// Step that a writer had written last at the checkpoint; -1 for nothing.
+std::int64_t last_step_of(const RunSetup& setup, const std::string& writer) {
+  std::int64_t step = -1;
+  if (setup.restart) {
+    Archive archive = Archive::reading_from(setup.restart->state);
+    archive.inside("output", [&] { archive.inside(writer, [&] { archive.field("last_step", step); }); });
+  }
+  return step;
+}
+
+/// Of the run until now; a run that continues reads it from the table's part of the checkpoint.
+StrainPath path_of_strain(const RunSetup& setup, const Simulation& simulation) {
+  StrainPath path(simulation.strain());
+  if (setup.restart) {
+    Archive archive = Archive::reading_from(setup.restart->state);
+    archive.inside("output", [&] { archive.inside(table_name, [&] { archive.object("strain_path", path); }); });
+  }
+  return path;
 }
 
 TrajectoryWriter trajectory_writer(const RunSetup& setup, const Simulation& simulation, const FrameOutput& output,
@@ -77,7 +97,8 @@ std::shared_ptr<MeasureTables> measure_tables(const RunSetup& setup, const Simul
         std::make_shared<const FrameRest>(packing, plan.material, setup.scene.options.dt, *plan.rest));
   }
   if (setup.restart && simulation.ranks().is_root() && plan.has(MeasureKind::motion)) {
-    tables->restore_motion(setup.restart->motion);
+    Archive archive = Archive::reading_from(setup.restart->state);
+    archive.inside("output", [&] { archive.inside(motion_name, [&] { tables->archive_motion(archive); }); });
   }
   return tables;
 }
@@ -86,27 +107,31 @@ std::shared_ptr<MeasureTables> measure_tables(const RunSetup& setup, const Simul
 template <class MakeSchedule>
 void follow_writers(RunWriters& writers, const RunSetup& setup, const MakeSchedule& schedule) {
   const OutputPlan& plan = setup.scene.output;
-  for (const auto* output : {&plan.dump, &plan.vtk}) {
-    if (*output) {
-      writers.frames.push_back(std::make_unique<FrameObserver>(
-          schedule((*output)->every), Simulation::Parts{.velocity = (*output)->velocities},
-          last_step_of(setup, writers.frames.size() + 1), [](const Snapshot&) {}));
+  const auto follow = [&](const std::string& name, const std::optional<FrameOutput>& output) {
+    if (output) {
+      writers.frames.push_back(std::make_unique<FrameObserver>(name, schedule(output->every),
+                                                               Simulation::Parts{.velocity = output->velocities},
+                                                               last_step_of(setup, name), [](const Snapshot&) {}));
     }
-  }
+  };
+  follow(dump_name, plan.dump);
+  follow(vtk_name, plan.vtk);
 }
 
 /// The measures, which all ranks take together.
 template <class MakeSchedule>
 void add_measures(RunWriters& writers, const RunSetup& setup, const Simulation& simulation,
                   const MakeSchedule& schedule) {
-  for (const SceneMeasure& entry : setup.scene.measures) {
-    const std::int64_t last_step = last_step_of(setup, writers.frames.size() + 1);
+  for (std::size_t k = 0; k < setup.scene.measures.size(); ++k) {
+    const SceneMeasure& entry = setup.scene.measures[k];
+    const std::string name = fmt::format("measure{}", k);
+    const std::int64_t last_step = last_step_of(setup, name);
     const auto tables = measure_tables(setup, simulation, entry.plan, last_step);
     // Velocities tell the kinetic part of the stress apart.
     const Simulation::Parts parts = {.velocity = entry.plan.has(MeasureKind::stress),
                                      .positions_on_all_ranks = entry.plan.needs_all_ranks()};
     writers.frames.push_back(std::make_unique<FrameObserver>(
-        schedule(entry.every), parts, last_step, [tables](const Snapshot& snapshot) { tables->add(snapshot); }));
+        name, schedule(entry.every), parts, last_step, [tables](const Snapshot& snapshot) { tables->add(snapshot); }));
     if (entry.plan.has(MeasureKind::motion)) {
       writers.motion = tables;
     }
@@ -115,12 +140,14 @@ void add_measures(RunWriters& writers, const RunSetup& setup, const Simulation& 
 
 } // namespace
 
-std::vector<std::int64_t> RunWriters::last_steps() const {
-  std::vector<std::int64_t> steps{table->last_step()};
+void RunWriters::archive(Archive& archive) {
+  archive.object(table_name, *table);
   for (const auto& writer : frames) {
-    steps.push_back(writer->last_step());
+    archive.object(writer->name(), *writer);
   }
-  return steps;
+  if (motion) {
+    archive.inside(motion_name, [&] { motion->archive_motion(archive); });
+  }
 }
 
 void RunWriters::wait() const {
@@ -133,47 +160,46 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
   RunWriters writers;
   const OutputPlan& plan = setup.scene.output;
   const auto schedule = [&](const OutputInterval& every) {
-    const bool is_known = setup.restart && !setup.restart->strain_path.empty();
-    return Schedule(every,
-                    is_known ? StrainPath::restored(setup.restart->strain_path) : StrainPath(simulation.strain()),
-                    simulation.time());
+    return Schedule(every, path_of_strain(setup, simulation), simulation.time());
   };
   const std::vector<std::string> columns = run_table_columns();
   const bool writes = simulation.ranks().is_root();
   std::optional<TableWriter> table;
   if (writes) {
-    table = setup.restart ? TableWriter::go_on(setup.folder.table(), columns, last_step_of(setup, 0))
+    table = setup.restart ? TableWriter::go_on(setup.folder.table(), columns, last_step_of(setup, table_name))
                           : TableWriter(setup.folder.table(), columns);
   }
   writers.table =
-      std::make_unique<TableObserver>(std::move(table), schedule(plan.table), numbers, last_step_of(setup, 0));
+      std::make_unique<TableObserver>(std::move(table), schedule(plan.table), numbers, last_step_of(setup, table_name));
 
   // Files are cut behind what the checkpoint knows of, not at its step: rows of the same step may have come later.
-  const auto last_step = [&] { return last_step_of(setup, writers.frames.size() + 1); };
-  const auto add = [&](const FrameOutput& output, FrameObserver::Write write, bool own = false) {
+  const auto add = [&](const std::string& name, const FrameOutput& output, FrameObserver::Write write,
+                       bool own = false) {
     writers.frames.push_back(std::make_unique<FrameObserver>(
-        schedule(output.every), Simulation::Parts{.velocity = output.velocities, .own = own}, last_step(),
-        std::move(write)));
+        name, schedule(output.every), Simulation::Parts{.velocity = output.velocities, .own = own},
+        last_step_of(setup, name), std::move(write)));
   };
   if (plan.trajectory) {
     writers.trajectory = std::make_shared<SharedTrajectory>(
         simulation.ranks(), setup.folder.trajectory(), simulation.packing().first_nodes(), [&](bool nodes_by_others) {
-          return trajectory_writer(setup, simulation, *plan.trajectory, last_step(), nodes_by_others);
+          return trajectory_writer(setup, simulation, *plan.trajectory, last_step_of(setup, trajectory_name),
+                                   nodes_by_others);
         });
     add(
-        *plan.trajectory, [writer = writers.trajectory](const Snapshot& own) { writer->write(own); }, true);
+        trajectory_name, *plan.trajectory, [writer = writers.trajectory](const Snapshot& own) { writer->write(own); },
+        true);
   }
   if (writes) {
     const auto topology = std::make_shared<const Topology>(simulation.packing().topology(false));
-    const auto add_behind = [&](const FrameOutput& output, WriteBehind::Write write) {
+    const auto add_behind = [&](const std::string& name, const FrameOutput& output, WriteBehind::Write write) {
       writers.behind.push_back(std::make_unique<WriteBehind>(std::move(write)));
-      add(output, [behind = writers.behind.back().get()](Snapshot&& frame) { behind->add(std::move(frame)); });
+      add(name, output, [behind = writers.behind.back().get()](Snapshot&& frame) { behind->add(std::move(frame)); });
     };
     if (plan.dump) {
-      add_behind(*plan.dump, dump_writer(setup, topology, last_step()));
+      add_behind(dump_name, *plan.dump, dump_writer(setup, topology, last_step_of(setup, dump_name)));
     }
     if (plan.vtk) {
-      add_behind(*plan.vtk, vtk_writer(setup, topology, last_step()));
+      add_behind(vtk_name, *plan.vtk, vtk_writer(setup, topology, last_step_of(setup, vtk_name)));
     }
   } else {
     follow_writers(writers, setup, schedule);

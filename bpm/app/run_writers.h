@@ -22,12 +22,12 @@ struct RunWriters {
   /// On all ranks. Closed at the end of a run, where a failure is still told; null when not asked for.
   std::shared_ptr<SharedTrajectory> trajectory;
   /// The measures of motion, which look back to the frame before; null when not asked for.
-  std::shared_ptr<const MeasureTables> motion;
+  std::shared_ptr<MeasureTables> motion;
 
   /// Returns when all frames handed out are in their files. \throws std::runtime_error when one could not be written.
   void wait() const;
-  /// Step of the last row and of each writer's last frame, as RunSetup::Restart keeps them.
-  std::vector<std::int64_t> last_steps() const;
+  /// What the writers have written so far: below the name of each.
+  void archive(Archive& archive);
 };
 
 /// The simulation is in the state that the run starts from. All ranks write the trajectory and take measures; all other

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/archive/archive.h"
+
 #include <cmath>
-#include <vector>
 
 namespace boba {
 
@@ -31,14 +32,14 @@ public:
   }
   double now() const { return before_ + std::abs(last_ - turned_at_); }
 
-  /// For checkpoints.
-  std::vector<double> saved() const { return {turned_at_, before_, direction_, last_}; }
-  static StrainPath restored(const std::vector<double>& saved) {
-    StrainPath path(saved.at(3));
-    path.turned_at_ = saved.at(0);
-    path.before_ = saved.at(1);
-    path.direction_ = saved.at(2);
-    return path;
+  void archive(Archive& archive) {
+    archive.field("turned_at", turned_at_);
+    archive.field("before", before_);
+    archive.field("direction", direction_);
+    archive.field("last", last_);
+    if (!std::isfinite(turned_at_ + before_ + direction_ + last_)) {
+      archive.fail("before", "holds no finite path of the strain");
+    }
   }
 
 private:

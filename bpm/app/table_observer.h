@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/app/schedule.h"
+#include "bpm/archive/archive.h"
 #include "bpm/dynamics/observer.h"
 #include "bpm/io/table.h"
 #include "bpm/packing/packing_numbers.h"
@@ -27,8 +28,11 @@ public:
 
   bool wants(const StepForecast& forecast) override;
   void observe(const Simulation& simulation, const StageProgress& progress) override;
-  std::int64_t last_step() const { return last_step_; }
-  const StrainPath& strain_path() const { return schedule_.path(); }
+  void archive(Archive& archive) {
+    archive.field("last_step", last_step_);
+    StrainPath path = schedule_.path();
+    archive.object("strain_path", path);
+  }
 
 private:
   double steps_per_second(std::int64_t step);

@@ -4,23 +4,11 @@
 #include "bpm/dynamics/node_exchange.h"
 
 #include <cstring>
-#include <stdexcept>
-#include <string>
+#include <utility>
 
 namespace boba {
 
 namespace {
-
-std::vector<double> flat(const Matrix3& m) {
-  return {m.data(), m.data() + 9};
-}
-
-Matrix3 matrix(const std::vector<double>& numbers) {
-  if (numbers.size() != 9) {
-    throw std::runtime_error("saved state: a matrix does not have nine numbers");
-  }
-  return Eigen::Map<const Matrix3>(numbers.data());
-}
 
 /// Takes the next number of type T from packed nodes.
 template <class T> T next(const std::byte*& from) {
@@ -43,11 +31,8 @@ void unpack_columns(const std::vector<std::byte>& nodes, std::vector<Stored>& x,
 
 template <class Coordinate, class Real, class Stored>
 std::vector<std::byte> pack_columns(const std::vector<Stored>& x, const std::vector<double>& v,
-                                    const std::vector<double>& f, std::size_t n) {
-  if (x.size() != n || v.size() != n || f.size() != n) {
-    throw std::runtime_error("saved state: the nodes belong to another packing or precision (" +
-                             std::to_string(x.size()) + " coordinates, " + std::to_string(n) + " expected)");
-  }
+                                    const std::vector<double>& f) {
+  const std::size_t n = x.size();
   std::vector<std::byte> nodes(n * (sizeof(Coordinate) + 2 * sizeof(Real)));
   std::byte* to = nodes.data();
   const auto put = [&](auto value) {
@@ -63,124 +48,99 @@ std::vector<std::byte> pack_columns(const std::vector<Stored>& x, const std::vec
 }
 
 // Node by node in the packing's order, each rank its own: put together the same whatever the lanes and the ranks.
-void save_nodes(const MovingPacking& moving, SavedState& saved) {
+void save_nodes(Archive& archive, const MovingPacking& moving) {
   const std::vector<std::byte> nodes = own_nodes(moving);
-  if (moving.options.precision == Precision::full) {
-    unpack_columns<double, double>(nodes, saved.real["position"], saved.real["velocity"], saved.real["force"]);
-    return;
+  const bool is_full = moving.options.precision == Precision::full;
+  std::vector<double> x, v, f;
+  std::vector<std::int64_t> fixed_x;
+  if (is_full) {
+    unpack_columns<double, double>(nodes, x, v, f);
+  } else {
+    unpack_columns<std::int32_t, float>(nodes, fixed_x, v, f);
+    std::vector<Vector3> origins = moving.state.origins();
+    share_grains(moving, origins);
+    archive.field("origin", origins);
   }
-  unpack_columns<std::int32_t, float>(nodes, saved.integer["position"], saved.real["velocity"], saved.real["force"]);
-  std::vector<Vector3> origins = moving.state.origins();
-  share_grains(moving, origins);
-  saved.real["origin"] = {origins.front().data(), origins.front().data() + 3 * origins.size()};
+  const std::vector<std::int64_t> shape = {static_cast<std::int64_t>(v.size() / 3), 3};
+  archive.save("position", is_full ? SavedValue{std::move(x), shape} : SavedValue{std::move(fixed_x), shape});
+  archive.save("velocity", {std::move(v), shape});
+  archive.save("force", {std::move(f), shape});
 }
 
-void restore_nodes(MovingPacking& moving, const SavedState& saved) {
+void restore_nodes(const Archive& archive, MovingPacking& moving) {
   std::vector<std::byte> nodes;
   moving.ranks().on_root([&] {
-    const auto n = static_cast<std::size_t>(3 * moving.packing.first_nodes().back());
-    const std::vector<double>&v = saved.real.at("velocity"), &f = saved.real.at("force");
+    const std::vector<std::int64_t> shape = {moving.packing.first_nodes().back(), 3};
+    const std::vector<double>&v = archive.real_values("velocity", shape), &f = archive.real_values("force", shape);
     nodes = moving.options.precision == Precision::full
-                ? pack_columns<double, double>(saved.real.at("position"), v, f, n)
-                : pack_columns<std::int32_t, float>(saved.integer.at("position"), v, f, n);
+                ? pack_columns<double, double>(archive.real_values("position", shape), v, f)
+                : pack_columns<std::int32_t, float>(archive.integer_values("position", shape), v, f);
   });
   scatter_nodes(moving, nodes);
   if (moving.options.precision == Precision::mixed) {
-    const std::vector<double>& origins = saved.real.at("origin");
-    if (origins.size() != 3 * moving.state.origins().size()) {
-      throw std::runtime_error("saved state: the grains' origins belong to another packing");
-    }
+    const auto n_grains = static_cast<std::int64_t>(moving.state.origins().size());
+    const std::vector<double>& origins = archive.real_values("origin", {n_grains, 3});
     for (std::size_t g = 0; g < moving.state.origins().size(); ++g) {
       moving.state.origins()[g] = Eigen::Map<const Vector3>(&origins[3 * g]);
     }
   }
 }
 
-void save_ends(const MovingPacking& moving, SavedState& saved) {
-  saved.real["end_gap"] = {moving.ends.gap()};
-  std::vector<double>& walls = saved.real["walls"];
-  for (const Wall& wall : moving.forces.walls()) {
-    for (const Vector3& vector : {wall.point, wall.normal, wall.velocity}) {
-      walls.insert(walls.end(), vector.data(), vector.data() + 3);
-    }
-    walls.push_back(wall.force);
-  }
-  saved.integer["clamp_count"] = {static_cast<std::int64_t>(moving.ends.clamps().size())};
-  for (std::size_t k = 0; k < moving.ends.clamps().size(); ++k) {
-    const std::string name = "clamp" + std::to_string(k);
-    saved.integer[name + "_grain"] = moving.ends.clamps()[k].grain;
-    saved.integer[name + "_node"] = moving.ends.clamps()[k].node;
-    saved.real[name] = {moving.ends.clamps()[k].velocity[0], moving.ends.clamps()[k].velocity[1],
-                        moving.ends.clamps()[k].velocity[2], moving.ends.clamps()[k].force[0],
-                        moving.ends.clamps()[k].force[1],    moving.ends.clamps()[k].force[2]};
+void archive_cell(Archive& archive, MovingCell& cell) {
+  MovingCell::Saved saved = cell.saved();
+  archive.field("h", saved.h);
+  archive.field("evaluated_h", saved.evaluated_h);
+  archive.field("map", saved.map);
+  archive.field("position_map", saved.position_map);
+  archive.field("residual_rate", saved.residual_rate);
+  archive.field("streaming", saved.streaming);
+  archive.field("next_streaming", saved.next_streaming);
+  archive.field("strain", saved.strain);
+  if (archive.is_reading()) {
+    cell.restore(saved);
   }
 }
 
-void restore_ends(MovingPacking& moving, const SavedState& saved) {
-  moving.ends.set_gap(saved.real.at("end_gap").at(0));
-  const std::vector<double>& walls = saved.real.at("walls");
-  std::vector<Wall> list;
-  for (std::size_t at = 0; at + 10 <= walls.size(); at += 10) {
-    const Eigen::Map<const Vector3> point(&walls[at]), normal(&walls[at + 3]), velocity(&walls[at + 6]);
-    list.push_back({point, normal, velocity, walls[at + 9]});
-  }
-  moving.forces.walls().set(std::move(list));
-  moving.ends.clamps().clear();
-  for (std::int64_t k = 0; k < saved.integer.at("clamp_count").at(0); ++k) {
-    const std::string name = "clamp" + std::to_string(k);
-    Clamp clamp;
-    clamp.grain = saved.integer.at(name + "_grain");
-    clamp.node = saved.integer.at(name + "_node");
-    const std::vector<double>& numbers = saved.real.at(name);
-    clamp.velocity = {numbers.at(0), numbers.at(1), numbers.at(2)};
-    clamp.force = {numbers.at(3), numbers.at(4), numbers.at(5)};
-    moving.ends.clamps().push_back(std::move(clamp));
+void archive_ends(Archive& archive, MovingPacking& moving) {
+  double gap = moving.ends.gap();
+  archive.field("gap", gap);
+  std::vector<Wall> walls(moving.forces.walls().begin(), moving.forces.walls().end());
+  archive.objects("walls", walls, [](Archive& a, Wall& wall) {
+    a.field("point", wall.point);
+    a.field("normal", wall.normal);
+    a.field("velocity", wall.velocity);
+    a.field("force", wall.force);
+  });
+  archive.objects("clamps", moving.ends.clamps(), [](Archive& a, Clamp& clamp) {
+    a.field("grain", clamp.grain);
+    a.field("node", clamp.node);
+    a.field("velocity", clamp.velocity);
+    a.field("force", clamp.force);
+  });
+  if (archive.is_reading()) {
+    moving.ends.set_gap(gap);
+    moving.forces.walls().set(std::move(walls));
   }
 }
 
 } // namespace
 
-void save_motion(const MovingPacking& moving, SavedState& saved) {
-  save_nodes(moving, saved);
-  const MovingCell::Saved cell = moving.cell.saved();
-  saved.real["box_h"] = flat(cell.h);
-  saved.real["evaluated_h"] = flat(cell.evaluated_h);
-  saved.real["cell_map"] = flat(cell.map);
-  saved.real["position_map"] = flat(cell.position_map);
-  saved.real["residual_rate"] = flat(cell.residual_rate);
-  saved.real["streaming"] = flat(cell.streaming);
-  saved.real["next_streaming"] = flat(cell.next_streaming);
-  saved.real["scalars"] = {cell.strain, moving.pressure, moving.kinetic_energy};
-  saved.real["velocity_sum"] = {moving.noted_momentum.begin(), moving.noted_momentum.end()};
-  saved.real["momentum_along_gradient"] = {moving.momentum_along_gradient.begin(),
-                                           moving.momentum_along_gradient.end()};
-  saved.integer["step"] = {moving.step};
-  saved.integer["started"] = {moving.started ? 1 : 0, moving.forces_kept ? 1 : 0};
-  save_ends(moving, saved);
-}
-
-void restore_motion(MovingPacking& moving, const SavedState& saved) {
-  restore_nodes(moving, saved);
-  const std::vector<double>& scalars = saved.real.at("scalars");
-  moving.cell.restore({.h = matrix(saved.real.at("box_h")),
-                       .evaluated_h = matrix(saved.real.at("evaluated_h")),
-                       .map = matrix(saved.real.at("cell_map")),
-                       .position_map = matrix(saved.real.at("position_map")),
-                       .residual_rate = matrix(saved.real.at("residual_rate")),
-                       .streaming = matrix(saved.real.at("streaming")),
-                       .next_streaming = matrix(saved.real.at("next_streaming")),
-                       .strain = scalars.at(0)});
-  moving.pressure = scalars.at(1);
-  moving.kinetic_energy = scalars.at(2);
-  const std::vector<double>& sum = saved.real.at("velocity_sum");
-  moving.noted_momentum = {sum.at(0), sum.at(1), sum.at(2)};
-  const std::vector<double>& along_gradient = saved.real.at("momentum_along_gradient");
-  moving.momentum_along_gradient = {along_gradient.at(0), along_gradient.at(1), along_gradient.at(2)};
-  restore_ends(moving, saved);
-  moving.step = saved.integer.at("step").at(0);
-  moving.started = saved.integer.at("started").at(0) != 0;
-  moving.forces_kept = saved.integer.at("started").at(1) != 0;
-  moving.forces.contact_list().invalidate();
+void archive_motion(Archive& archive, MovingPacking& moving) {
+  if (archive.is_reading()) {
+    restore_nodes(archive, moving);
+    moving.forces.contact_list().invalidate();
+  } else {
+    save_nodes(archive, moving);
+  }
+  archive.inside("cell", [&] { archive_cell(archive, moving.cell); });
+  archive.inside("ends", [&] { archive_ends(archive, moving); });
+  archive.field("pressure", moving.pressure);
+  archive.field("kinetic_energy", moving.kinetic_energy);
+  archive.field("noted_momentum", moving.noted_momentum);
+  archive.field("momentum_along_gradient", moving.momentum_along_gradient);
+  archive.field("step", moving.step);
+  archive.field("started", moving.started);
+  archive.field("forces_kept", moving.forces_kept);
 }
 
 } // namespace boba

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/archive/archive.h"
 #include "bpm/dynamics/moving_packing.h"
 
 namespace boba {
 
-/// Writes all that a packing in motion needs to continue bit for bit. Each rank adds the nodes of its own grains; the
-/// rest is the same on all. Collective.
-void save_motion(const MovingPacking& moving, SavedState& saved);
-
-/// Takes a saved state over; of nodes, rank 0's. Collective.
-/// \throws std::runtime_error, std::out_of_range when the state belongs to another packing or lacks a number.
-void restore_motion(MovingPacking& moving, const SavedState& saved);
+/// All that a packing in motion needs to continue bit for bit. Saved, each rank adds the nodes of its own grains and
+/// the rest is the same on all; read, nodes are rank 0's. Collective. \throws SavedStateError when what is read belongs
+/// to another packing or lacks a field.
+void archive_motion(Archive& archive, MovingPacking& moving);
 
 } // namespace boba

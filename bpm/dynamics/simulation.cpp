@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/dynamics/simulation.h"
 
+#include "bpm/archive/archive.h"
 #include "bpm/dynamics/blow_up_checks.h"
 #include "bpm/dynamics/grain_migration.h"
 #include "bpm/dynamics/motion_archive.h"
@@ -13,7 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <map>
+#include <optional>
 #include <stdexcept>
 
 namespace boba {
@@ -41,6 +42,14 @@ void check(const Packing& packing, const SimulationOptions& options) {
 
 } // namespace
 
+void Totals::archive(Archive& archive) {
+  archive.field("stress", stress);
+  archive.field("pressure", pressure);
+  archive.field("kinetic_energy", kinetic_energy);
+  archive.field("elastic_energy", elastic_energy);
+  archive.field("largest_overlap", largest_overlap);
+}
+
 struct Simulation::Impl {
   Impl(Packing packing, const Material& material, const SimulationOptions& options)
       : stepper(std::move(packing), material, options) {}
@@ -49,9 +58,9 @@ struct Simulation::Impl {
   LoadBalance load_balance;
   Totals totals;
   int stage_index = 0;
-  StageDriver* driver = nullptr;             ///< of the stage that `run` is in
-  std::unique_ptr<SavedState> stopped_stage; ///< a stage that was stopped, here or in a restored run, for `run`
-  double last_balance = 0.0;                 ///< s
+  StageDriver* driver = nullptr;           ///< of the stage that `run` is in
+  std::optional<SavedState> stopped_stage; ///< of the driver, when a stage was stopped here or in a restored run
+  double last_balance = 0.0;               ///< s
 
   StageProgress progress() const {
     StageProgress progress = driver->progress(stepper);
@@ -110,9 +119,32 @@ struct Simulation::Impl {
     }
   }
 
+  /// The driver's fields with its name, which must be the same when they are read.
+  void archive_driver(Archive& archive) {
+    archive.inside("simulation", [&] {
+      archive.inside("stage", [&] {
+        std::string name = driver->name();
+        archive.field("name", name);
+        if (name != driver->name()) {
+          archive.fail("name", fmt::format("is \"{}\"; the run continues with a stage \"{}\"", name, driver->name()));
+        }
+        archive.object("driver", *driver);
+      });
+    });
+  }
+
+  void archive(Archive& archive) {
+    archive.inside("simulation", [&] {
+      archive_motion(archive, stepper.moving());
+      archive.field("stage_index", stage_index);
+      archive.object("totals", totals);
+    });
+  }
+
   void begin_stage(std::span<Observer* const> observers, Simulation& self) {
     if (stopped_stage) {
-      driver->restore(*stopped_stage);
+      Archive archive = Archive::reading_from(*stopped_stage);
+      archive_driver(archive);
       stopped_stage.reset();
       return;
     }
@@ -129,8 +161,8 @@ struct Simulation::Impl {
     while (!driver->finished()) {
       stepper.agreement().wish_to_stop(stop && stop());
       if (stepper.agreement().stop()) {
-        stopped_stage = std::make_unique<SavedState>();
-        driver->save(*stopped_stage);
+        Archive archive = Archive::saving_to(stopped_stage.emplace());
+        archive_driver(archive);
         return RunOutcome::stopped;
       }
       take_step(observers, self);
@@ -152,6 +184,10 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
 RunOutcome Simulation::run(int stage_index, StageDriver& driver, std::span<Observer* const> observers,
                            const StopRequest& stop) {
+  if (impl_->stopped_stage && stage_index != impl_->stage_index) {
+    throw std::invalid_argument(fmt::format("simulation: stage {} was stopped; it must end before stage {} can run",
+                                            impl_->stage_index, stage_index));
+  }
   const ScopedThreads threads(impl_->stepper.options().threads);
   impl_->stage_index = stage_index;
   impl_->driver = &driver;
@@ -214,57 +250,30 @@ std::span<const int> Simulation::own_grains() const {
 
 SavedState Simulation::save() const {
   SavedState saved;
-  save_motion(impl_->stepper.moving(), saved);
-  saved.integer["stage"] = {impl_->stage_index, impl_->driver != nullptr || impl_->stopped_stage ? 1 : 0};
-  const Totals& totals = impl_->totals;
-  saved.real["totals"] = {totals.pressure, totals.kinetic_energy, totals.elastic_energy, totals.largest_overlap};
-  saved.real["totals_stress"] = {totals.stress.begin(), totals.stress.end()};
+  Archive archive = Archive::saving_to(saved);
+  impl_->archive(archive);
   if (impl_->driver != nullptr) {
-    impl_->driver->save(saved);
+    impl_->archive_driver(archive);
   } else if (impl_->stopped_stage) {
-    saved.real.insert(impl_->stopped_stage->real.begin(), impl_->stopped_stage->real.end());
-    saved.integer.insert(impl_->stopped_stage->integer.begin(), impl_->stopped_stage->integer.end());
+    saved.insert(impl_->stopped_stage->begin(), impl_->stopped_stage->end());
   }
   return saved;
 }
 
-namespace {
-
-/// Rank 0's state for all, but for the nodes.
-SavedState shared(SavedState state, const Ranks& ranks) {
-  if (!ranks.is_root()) {
-    state = {};
-  }
-  share_but_nodes(state.real, ranks);
-  share_but_nodes(state.integer, ranks);
-  return state;
-}
-
-} // namespace
-
 void Simulation::restore(const SavedState& of_root) {
-  const SavedState of_all = ranks().is_distributed() ? shared(of_root, ranks()) : SavedState{};
+  SavedState of_all;
+  if (ranks().is_distributed()) {
+    of_all = ranks().is_root() ? of_root : SavedState();
+    share_but_nodes(of_all, ranks());
+  }
   const SavedState& state = ranks().is_distributed() ? of_all : of_root;
-  try {
-    restore_motion(impl_->stepper.moving(), state);
-    impl_->stage_index = static_cast<int>(state.integer.at("stage").at(0));
-    const std::vector<double>& totals = state.real.at("totals");
-    impl_->totals.pressure = totals.at(0);
-    impl_->totals.least_pressure = least_pressure(impl_->stepper.options().precision);
-    impl_->totals.kinetic_energy = totals.at(1);
-    impl_->totals.elastic_energy = totals.at(2);
-    impl_->totals.largest_overlap = totals.at(3);
-    std::copy_n(state.real.at("totals_stress").begin(), 6, impl_->totals.stress.begin());
-    impl_->stopped_stage.reset();
-    if (state.integer.at("stage").at(1) != 0) {
-      impl_->stopped_stage = std::make_unique<SavedState>(state);
-      for (const std::string& name : entries_of_nodes) {
-        impl_->stopped_stage->real.erase(name);
-        impl_->stopped_stage->integer.erase(name);
-      }
-    }
-  } catch (const std::out_of_range&) {
-    throw std::runtime_error("saved state: a number is missing; it was written by another version of Boba");
+  Archive archive = Archive::reading_from(state);
+  impl_->archive(archive);
+  impl_->totals.least_pressure = least_pressure(impl_->stepper.options().precision);
+  impl_->stopped_stage.reset();
+  const std::string of_stage = "simulation.stage.";
+  for (auto at = state.lower_bound(of_stage); at != state.end() && at->first.starts_with(of_stage); ++at) {
+    (impl_->stopped_stage ? *impl_->stopped_stage : impl_->stopped_stage.emplace()).insert(*at);
   }
 }
 

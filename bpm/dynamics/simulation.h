@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/archive/saved_state.h"
 #include "bpm/dynamics/observer.h"
 #include "bpm/laws/material.h"
 #include "bpm/packing/lane_layout.h"
@@ -12,7 +13,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <map>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -21,6 +21,7 @@
 
 namespace boba {
 
+class Archive;
 class StageDriver;
 
 struct SimulationOptions {
@@ -44,6 +45,7 @@ struct Totals {
   double mu() const {
     return std::abs(pressure) > least_pressure ? stress[3] / pressure : std::numeric_limits<double>::quiet_NaN();
   }
+  void archive(Archive& archive);
 };
 
 /// Seconds spent in each part of the steps so far, for the benchmark and the log.
@@ -63,12 +65,6 @@ public:
 /// The run was told to stop (signal, wall-time limit) and is at a step from which it can go on.
 enum class RunOutcome { finished, stopped };
 
-/// Everything that must be stored for a run to go on bit for bit. Names are stable; see docs/formats.md, "Checkpoint".
-struct SavedState {
-  std::map<std::string, std::vector<double>> real;
-  std::map<std::string, std::vector<std::int64_t>> integer;
-};
-
 /// A packing in motion: the engine's only public face.
 ///
 /// With several ranks, all make the same calls, and everything but the mere looks (step, time, box, totals ...) is
@@ -85,8 +81,8 @@ public:
   using StopRequest = std::function<bool()>;
   /// Runs one stage to its end: from its beginning or, when this stage was stopped (here, or in the run that `restore`
   /// took over), from where it was. The driver is used during the call alone.
-  /// \throws BlowUp, std::runtime_error when the stage cannot reach its goal, or when another kind of stage was
-  /// stopped.
+  /// \throws BlowUp, std::runtime_error when the stage cannot reach its goal; SavedStateError or std::invalid_argument
+  /// when another stage was stopped and has not ended.
   RunOutcome run(int stage_index, StageDriver& driver, std::span<Observer* const> observers,
                  const StopRequest& stop = {});
   /// The same for a driver that is made in the call: `simulation.run(0, HoldDriver({.time = 10.0}), {})`.
@@ -123,12 +119,13 @@ public:
   /// Distance between the two ends (walls or clamps) at present, d; 0 when there are none.
   double end_gap() const;
 
-  /// The same for any number of ranks: of `position`, `velocity` and `force` each rank has the nodes of its own grains
-  /// (own_grains), everything else is there on rank 0.
+  /// Fields below "simulation", the same for any number of ranks: of those of nodes (node_fields) each rank has the
+  /// nodes of its own grains (own_grains), everything else is there on rank 0.
   SavedState save() const;
   /// Grains that this rank owns, ascending; with one rank all.
   std::span<const int> own_grains() const;
-  /// Rank 0's state for all. \throws std::runtime_error when the state does not belong to this packing.
+  /// Rank 0's state for all; fields of others may be among it. \throws SavedStateError when a field is missing or is
+  /// not that of this packing.
   void restore(const SavedState& state);
   /// Index of the stage that a restored state is in (or that comes next).
   int stage_index() const;

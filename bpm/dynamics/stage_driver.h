@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/archive/archive.h"
 #include "bpm/dynamics/moving_cell.h"
 #include "bpm/dynamics/observer.h"
 #include "bpm/dynamics/simulation.h"
@@ -39,9 +40,8 @@ public:
   virtual StageProgress progress(const Stepper& stepper) const = 0;
   /// What is to be said at the stage's end beside the means: how well it held what it was to hold. "" where nothing is.
   virtual std::string report() const { return ""; }
-  /// All that the stage needs to continue bit for bit.
-  virtual void save(SavedState& saved) const = 0;
-  virtual void restore(const SavedState& saved) = 0;
+  /// All that the stage needs to continue bit for bit, field by field.
+  virtual void archive(Archive& archive) = 0;
 };
 
 } // namespace boba

@@ -16,16 +16,17 @@
 
 namespace boba {
 
-// The file: mark, length of the file, number of entries; each entry: kind, length of its name, count, name, values;
-// at the end the checksum of all bytes before it. Numbers are 64 bits wide, little-endian. It is written piece by
-// piece, so that a large packing needs no second copy in memory, and only this source reads it. The checksum is one
-// that can be put together from those of pieces, which ranks have written.
+// The file: mark, length of the file, number of fields; each field: type, length of its name, number of dimensions,
+// length of its values in bytes, dimensions, name, values; at the end the checksum of all bytes before it. Numbers are
+// 64 bits wide, little-endian. It is written piece by piece, so that a large packing needs no second copy in memory,
+// and only this source reads it. The checksum is one that can be put together from those of pieces, which ranks have
+// written.
 
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 
-constexpr std::string_view mark = "BOBACKP2", any_mark = "BOBACKP";
+constexpr std::string_view mark = "BOBACKP3", any_mark = "BOBACKP";
 enum class Kind : std::uint64_t { text = 1, real = 2, integer = 3 };
 
 std::uint32_t checksum(std::string_view bytes, std::uint32_t before = 0) {
@@ -36,17 +37,14 @@ template <typename T> std::string_view bytes_of(const T* values, std::size_t n) 
   return {reinterpret_cast<const char*>(values), n * sizeof(T)};
 }
 
-/// Calls visit(kind, name, bytes) for every entry in the order of the file.
-template <typename Visit> void for_each_entry(const CheckpointData& data, Visit visit) {
-  for (const auto& [name, text] : data.text) {
-    visit(Kind::text, name, std::string_view(text));
-  }
-  for (const auto& [name, values] : data.real) {
-    visit(Kind::real, name, bytes_of(values.data(), values.size()));
-  }
-  for (const auto& [name, values] : data.integer) {
-    visit(Kind::integer, name, bytes_of(values.data(), values.size()));
-  }
+Kind kind_of(const SavedValue& value) {
+  return std::holds_alternative<SavedValue::Text>(value.values)    ? Kind::text
+         : std::holds_alternative<SavedValue::Reals>(value.values) ? Kind::real
+                                                                   : Kind::integer;
+}
+
+std::string_view bytes_of(const SavedValue& value) {
+  return std::visit([](const auto& values) { return bytes_of(values.data(), values.size()); }, value.values);
 }
 
 /// A piece of the file that somebody has written.
@@ -75,72 +73,90 @@ private:
   std::vector<Piece> pieces_;
 };
 
-/// Everything but the values of nodes. Returns where those begin, in the order of `nodes.names`.
-std::vector<std::uint64_t> write_entries(PieceWriter& out, const CheckpointData& data, const NodeEntries& nodes) {
-  constexpr std::size_t portion = 1 << 18;
-  std::string gathered; // names and lengths are a few bytes each: they go out together
-  std::uint64_t at = 0; // of what is gathered
-  const auto put_now = [&](std::string_view bytes) {
-    out.write(at, bytes);
-    at += bytes.size();
-  };
-  const auto flush = [&] {
-    put_now(gathered);
-    gathered.clear();
-  };
-  const auto put = [&](std::string_view bytes) {
+/// Hands the head of the file to a writer; small pieces go out together.
+class HeadWriter {
+public:
+  explicit HeadWriter(PieceWriter& out) : out_(out) {}
+
+  void put(std::string_view bytes) {
+    constexpr std::size_t portion = 1 << 18;
     if (bytes.size() >= portion) {
       flush();
       put_now(bytes);
     } else {
-      gathered += bytes;
+      gathered_ += bytes;
     }
-  };
-  const auto put_number = [&](std::uint64_t number) { put(bytes_of(&number, 1)); };
+  }
+  void put_number(std::uint64_t number) { put(bytes_of(&number, 1)); }
+  /// Leaves room for others to write; returns where it begins.
+  std::uint64_t leave_room(std::uint64_t n_bytes) {
+    flush();
+    at_ += n_bytes;
+    return at_ - n_bytes;
+  }
+  void flush() {
+    put_now(gathered_);
+    gathered_.clear();
+  }
+
+private:
+  void put_now(std::string_view bytes) {
+    out_.write(at_, bytes);
+    at_ += bytes.size();
+  }
+
+  PieceWriter& out_;
+  std::string gathered_;
+  std::uint64_t at_ = 0; ///< of what is gathered
+};
+
+/// Everything but the values of nodes. Returns where those begin, in the order of `nodes.names`.
+std::vector<std::uint64_t> write_fields(PieceWriter& out, const SavedState& data, const NodeFields& nodes) {
+  constexpr std::size_t width = sizeof(std::uint64_t);
   const auto place_in_names = [&](const std::string& name) {
     return std::find(nodes.names.begin(), nodes.names.end(), name) - nodes.names.begin();
   };
   const auto is_of_nodes = [&](const std::string& name) { return place_in_names(name) < std::ssize(nodes.names); };
-  const auto length_of = [&](const std::string& name, std::string_view bytes) {
-    return is_of_nodes(name) ? 3 * sizeof(double) * static_cast<std::uint64_t>(nodes.n_nodes) : bytes.size();
+  const auto length_of = [&](const std::string& name, const SavedValue& value) {
+    return is_of_nodes(name) ? 3 * width * static_cast<std::uint64_t>(nodes.n_nodes) : bytes_of(value).size();
   };
-  std::uint64_t length = mark.size() + 3 * sizeof(std::uint64_t), n_entries = 0;
-  for_each_entry(data, [&](Kind, const std::string& name, std::string_view bytes) {
-    length += 3 * sizeof(std::uint64_t) + name.size() + length_of(name, bytes);
-    ++n_entries;
-  });
-  put(mark);
-  put_number(length);
-  put_number(n_entries);
+  std::uint64_t length = mark.size() + 3 * width; // length, number of fields, checksum
+  for (const auto& [name, value] : data) {
+    length += 4 * width + value.shape.size() * width + name.size() + length_of(name, value);
+  }
+  HeadWriter head(out);
+  head.put(mark);
+  head.put_number(length);
+  head.put_number(data.size());
   std::vector<std::uint64_t> places(nodes.names.size(), 0);
-  for_each_entry(data, [&](Kind kind, const std::string& name, std::string_view bytes) {
-    put_number(static_cast<std::uint64_t>(kind));
-    put_number(name.size());
-    put_number(length_of(name, bytes));
-    put(name);
+  for (const auto& [name, value] : data) {
+    head.put_number(static_cast<std::uint64_t>(kind_of(value)));
+    head.put_number(name.size());
+    head.put_number(value.shape.size());
+    head.put_number(length_of(name, value));
     if (is_of_nodes(name)) {
-      flush();
-      places[place_in_names(name)] = at;
-      at += length_of(name, bytes);
+      head.put_number(static_cast<std::uint64_t>(nodes.n_nodes));
+      head.put_number(3);
+      head.put(name);
+      places[place_in_names(name)] = head.leave_room(length_of(name, value));
     } else {
-      put(bytes);
+      head.put(bytes_of(value.shape.data(), value.shape.size()));
+      head.put(name);
+      head.put(bytes_of(value));
     }
-  });
-  flush();
+  }
+  head.flush();
   return places;
 }
 
 /// This rank's nodes of each of their entries.
-void write_nodes(PieceWriter& out, const CheckpointData& data, const NodeEntries& nodes,
+void write_nodes(PieceWriter& out, const SavedState& data, const NodeFields& nodes,
                  const std::vector<std::uint64_t>& places) {
   constexpr std::uint64_t width = 3 * sizeof(double);
   static_assert(sizeof(double) == sizeof(std::int64_t));
   for (std::size_t k = 0; k < nodes.names.size(); ++k) {
-    const auto real = data.real.find(nodes.names[k]);
-    const auto integer = data.integer.find(nodes.names[k]);
-    std::string_view values = real != data.real.end()         ? bytes_of(real->second.data(), real->second.size())
-                              : integer != data.integer.end() ? bytes_of(integer->second.data(), integer->second.size())
-                                                              : std::string_view();
+    const auto at = data.find(nodes.names[k]);
+    std::string_view values = at != data.end() ? bytes_of(at->second) : std::string_view();
     for (const NodeRun& run : nodes.own) {
       const std::uint64_t n = run.n * width;
       if (values.size() < n) {
@@ -171,14 +187,14 @@ void write_checksum(SharedFile& file, std::vector<Piece> pieces) {
 }
 
 /// Reads numbers and names from a file whose checksum is right already; the bounds are checked all the same.
-class EntryReader {
+class FieldReader {
 public:
-  EntryReader(const std::filesystem::path& path, std::uint64_t length)
+  FieldReader(const std::filesystem::path& path, std::uint64_t length)
       : path_(path), in_(path, std::ios::binary), left_(length) {}
 
   void take(char* target, std::uint64_t n) {
     if (n > left_ || !in_.read(target, static_cast<std::streamsize>(n))) {
-      refuse(path_, "an entry goes beyond the end of the file");
+      refuse(path_, "a field goes beyond the end of the file");
     }
     left_ -= n;
   }
@@ -191,7 +207,7 @@ public:
   template <typename Values> Values values(std::uint64_t n_bytes) {
     using Value = typename Values::value_type;
     if (n_bytes > left_ || n_bytes % sizeof(Value) != 0) {
-      refuse(path_, "an entry goes beyond the end of the file");
+      refuse(path_, "a field goes beyond the end of the file");
     }
     Values result(n_bytes / sizeof(Value), Value{});
     take(reinterpret_cast<char*>(result.data()), n_bytes);
@@ -203,6 +219,14 @@ private:
   std::ifstream in_;
   std::uint64_t left_;
 };
+
+std::uint64_t checked_dimensions(const std::filesystem::path& path, std::uint64_t n_dimensions) {
+  constexpr std::uint64_t most_dimensions = 8;
+  if (n_dimensions > most_dimensions) {
+    refuse(path, fmt::format("a field has {} dimensions; at most {} are known", n_dimensions, most_dimensions));
+  }
+  return n_dimensions;
+}
 
 /// Throws unless the file has the length it names and its checksum is right.
 std::uint64_t checked_length(const std::filesystem::path& path) {
@@ -267,12 +291,12 @@ void remove_older(const std::filesystem::path& directory, int keep) {
 
 } // namespace
 
-std::filesystem::path write_checkpoint(const std::filesystem::path& directory, const CheckpointData& data, int keep) {
+std::filesystem::path write_checkpoint(const std::filesystem::path& directory, const SavedState& data, int keep) {
   return write_checkpoint(directory, data, Ranks::alone(), {}, keep);
 }
 
-std::filesystem::path write_checkpoint(const std::filesystem::path& directory, const CheckpointData& data,
-                                       const Ranks& ranks, const NodeEntries& nodes, int keep) {
+std::filesystem::path write_checkpoint(const std::filesystem::path& directory, const SavedState& data,
+                                       const Ranks& ranks, const NodeFields& nodes, int keep) {
   const std::vector<NumberedCheckpoint> before =
       ranks.is_root() ? checkpoints_in(directory) : std::vector<NumberedCheckpoint>{};
   const std::uint64_t number = before.empty() ? 1 : before.front().number + 1;
@@ -295,7 +319,7 @@ std::filesystem::path write_checkpoint(const std::filesystem::path& directory, c
     std::optional<PieceWriter> out;
     std::vector<std::uint64_t> places;
     ranks.collectively([&] { out.emplace(beside); });
-    ranks.on_root([&] { places = write_entries(*out, data, nodes); });
+    ranks.on_root([&] { places = write_fields(*out, data, nodes); });
     ranks.broadcast(places);
     ranks.collectively([&] {
       write_nodes(*out, data, nodes, places);
@@ -324,30 +348,36 @@ std::filesystem::path write_checkpoint(const std::filesystem::path& directory, c
   return path;
 }
 
-CheckpointData read_checkpoint(const std::filesystem::path& path) {
+SavedState read_checkpoint(const std::filesystem::path& path) {
   const std::uint64_t length = checked_length(path);
-  EntryReader in(path, length - sizeof(std::uint64_t));
+  FieldReader in(path, length - sizeof(std::uint64_t));
   in.values<std::string>(mark.size());
   in.number();
-  CheckpointData data;
-  const std::uint64_t n_entries = in.number();
-  for (std::uint64_t entry = 0; entry < n_entries; ++entry) {
+  SavedState data;
+  const std::uint64_t n_fields = in.number();
+  for (std::uint64_t field = 0; field < n_fields; ++field) {
     const auto kind = static_cast<Kind>(in.number());
-    const std::uint64_t name_length = in.number(), n_bytes = in.number();
+    const std::uint64_t name_length = in.number(), n_dimensions = in.number(), n_bytes = in.number();
+    SavedValue value;
+    value.shape = in.values<std::vector<std::int64_t>>(checked_dimensions(path, n_dimensions) * sizeof(std::int64_t));
     const auto name = in.values<std::string>(name_length);
     switch (kind) {
     case Kind::text:
-      data.text[name] = in.values<std::string>(n_bytes);
+      value.values = in.values<SavedValue::Text>(n_bytes);
       break;
     case Kind::real:
-      data.real[name] = in.values<std::vector<double>>(n_bytes);
+      value.values = in.values<SavedValue::Reals>(n_bytes);
       break;
     case Kind::integer:
-      data.integer[name] = in.values<std::vector<std::int64_t>>(n_bytes);
+      value.values = in.values<SavedValue::Integers>(n_bytes);
       break;
     default:
-      refuse(path, fmt::format("entry '{}' is of a kind that this version does not know", name));
+      refuse(path, fmt::format("the field '{}' is of a type that this version does not know", name));
     }
+    if (!value.is_whole()) {
+      refuse(path, fmt::format("the field '{}' does not hold as many values as it says", name));
+    }
+    data[name] = std::move(value);
   }
   return data;
 }

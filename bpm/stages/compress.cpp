@@ -78,16 +78,12 @@ StageProgress CompressDriver::progress(const Stepper& stepper) const {
   return progress;
 }
 
-void CompressDriver::save(SavedState& saved) const {
-  saved.real["driver"] = {static_cast<double>(phase_), start_time_, gain_, halfway_.time, halfway_.pressure};
-}
-
-void CompressDriver::restore(const SavedState& saved) {
-  const std::vector<double>& numbers = saved.real.at("driver");
-  phase_ = static_cast<Phase>(static_cast<int>(numbers.at(0)));
-  start_time_ = numbers.at(1);
-  gain_ = numbers.at(2);
-  halfway_ = {numbers.at(3), numbers.at(4)};
+void CompressDriver::archive(Archive& archive) {
+  archive.field("phase", phase_, Phase::settled);
+  archive.field("start_time", start_time_);
+  archive.field("gain", gain_);
+  archive.field("halfway_time", halfway_.time);
+  archive.field("halfway_pressure", halfway_.pressure);
 }
 
 SceneSection CompressEntry::section() {

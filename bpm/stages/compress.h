@@ -33,8 +33,7 @@ public:
   double shear_rate() const override { return 0.0; }
   void end(Stepper&) override {}
   StageProgress progress(const Stepper& stepper) const override;
-  void save(SavedState& saved) const override;
-  void restore(const SavedState& saved) override;
+  void archive(Archive& archive) override;
 
 private:
   enum class Phase { ramp, settle, settled };

@@ -22,15 +22,4 @@ double HeldPressure::dilation_rate(const Stepper& stepper, double share_done) {
   return barostat_rate(*barostat_, gain_, stepper.pressure());
 }
 
-void HeldPressure::save(SavedState& saved) const {
-  saved.real["driver"] = {gain_};
-  saved.real["held_pressure"] = report_.numbers();
-}
-
-void HeldPressure::restore(const SavedState& saved) {
-  gain_ = saved.real.at("driver").at(0);
-  const std::vector<double>& numbers = saved.real.at("held_pressure");
-  report_.restore(numbers.at(0), numbers.at(1), numbers.at(2), numbers.at(3), numbers.at(4));
-}
-
 } // namespace boba

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/archive/archive.h"
 #include "bpm/dynamics/barostat.h"
 #include "bpm/dynamics/simulation.h"
 #include "bpm/stages/held_pressure_report.h"
@@ -23,8 +24,10 @@ public:
   double dilation_rate(const Stepper& stepper, double share_done);
   const HeldPressureReport& report() const { return report_; }
 
-  void save(SavedState& saved) const;
-  void restore(const SavedState& saved);
+  void archive(Archive& archive) {
+    archive.field("gain", gain_);
+    archive.object("report", report_);
+  }
 
 private:
   std::optional<Barostat> barostat_;

@@ -37,12 +37,12 @@ std::string HeldPressureReport::text() const {
              : "pressure held: " + held;
 }
 
-void HeldPressureReport::restore(double n, double target, double sum, double sum2, double n_within) {
-  n_ = n;
-  target_ = target;
-  sum_ = sum;
-  sum2_ = sum2;
-  n_within_ = n_within;
+void HeldPressureReport::archive(Archive& archive) {
+  archive.field("n", n_);
+  archive.field("target", target_);
+  archive.field("sum", sum_);
+  archive.field("sum_of_squares", sum2_);
+  archive.field("n_within", n_within_);
 }
 
 } // namespace boba

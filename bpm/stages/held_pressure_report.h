@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/archive/archive.h"
+
 #include <string>
-#include <vector>
 
 namespace boba {
 
@@ -17,9 +18,8 @@ public:
   /// missed; "" without steps.
   std::string text() const;
 
-  /// All that it has added up, for a checkpoint.
-  std::vector<double> numbers() const { return {n_, target_, sum_, sum2_, n_within_}; }
-  void restore(double n, double target, double sum, double sum2, double n_within);
+  /// All that it has added up.
+  void archive(Archive& archive);
 
   static constexpr double tolerance = 0.05; ///< of P / P0
 

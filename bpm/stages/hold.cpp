@@ -25,14 +25,9 @@ StageProgress HoldDriver::progress(const Stepper& stepper) const {
   return progress;
 }
 
-void HoldDriver::save(SavedState& saved) const {
-  steps_.save(saved);
-  pressure_.save(saved);
-}
-
-void HoldDriver::restore(const SavedState& saved) {
-  steps_.restore(saved);
-  pressure_.restore(saved);
+void HoldDriver::archive(Archive& archive) {
+  archive.object("steps", steps_);
+  archive.object("pressure", pressure_);
 }
 
 SceneSection HoldEntry::section() {

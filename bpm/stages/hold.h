@@ -29,8 +29,7 @@ public:
   void end(Stepper&) override {}
   StageProgress progress(const Stepper& stepper) const override;
   std::string report() const override { return pressure_.is_held() ? pressure_.report().text() : ""; }
-  void save(SavedState& saved) const override;
-  void restore(const SavedState& saved) override;
+  void archive(Archive& archive) override;
 
 private:
   HoldStage stage_;

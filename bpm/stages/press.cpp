@@ -63,15 +63,10 @@ StageProgress PressDriver::progress(const Stepper&) const {
   return progress;
 }
 
-void PressDriver::save(SavedState& saved) const {
-  saved.real["driver"] = {height_, dt_};
-  steps_.save(saved);
-}
-
-void PressDriver::restore(const SavedState& saved) {
-  height_ = saved.real.at("driver").at(0);
-  dt_ = saved.real.at("driver").at(1);
-  steps_.restore(saved);
+void PressDriver::archive(Archive& archive) {
+  archive.field("height", height_);
+  archive.field("dt", dt_);
+  archive.object("steps", steps_);
 }
 
 SceneSection PressEntry::section() {

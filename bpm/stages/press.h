@@ -32,8 +32,7 @@ public:
   double shear_rate() const override { return 0.0; }
   void end(Stepper& stepper) override;
   StageProgress progress(const Stepper& stepper) const override;
-  void save(SavedState& saved) const override;
-  void restore(const SavedState& saved) override;
+  void archive(Archive& archive) override;
 
 private:
   void begin_walls(Stepper& stepper);

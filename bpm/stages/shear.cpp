@@ -28,14 +28,9 @@ StageProgress ShearDriver::progress(const Stepper& stepper) const {
   return progress;
 }
 
-void ShearDriver::save(SavedState& saved) const {
-  steps_.save(saved);
-  pressure_.save(saved);
-}
-
-void ShearDriver::restore(const SavedState& saved) {
-  steps_.restore(saved);
-  pressure_.restore(saved);
+void ShearDriver::archive(Archive& archive) {
+  archive.object("steps", steps_);
+  archive.object("pressure", pressure_);
 }
 
 SceneSection ShearEntry::section() {

@@ -18,7 +18,7 @@ struct StageSurroundings {
   Material material;
 };
 
-/// What is known of the packing when a stage is prepared.
+/// What is known of the packing when a stage is prepared; not to be kept beyond the call.
 struct StageContext {
   std::string scene;      ///< path, for messages
   const Packing& packing; ///< as the run starts; with several ranks only rank 0 has its nodes

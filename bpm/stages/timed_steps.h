@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/dynamics/simulation.h"
+#include "bpm/archive/archive.h"
 #include "bpm/dynamics/step_count.h"
 
 #include <cstdint>
@@ -22,10 +22,9 @@ public:
     return n_steps_ > 0 ? static_cast<double>(steps_done_) / static_cast<double>(n_steps_) : 1.0;
   }
 
-  void save(SavedState& saved) const { saved.integer["driver"] = {n_steps_, steps_done_}; }
-  void restore(const SavedState& saved) {
-    n_steps_ = saved.integer.at("driver").at(0);
-    steps_done_ = saved.integer.at("driver").at(1);
+  void archive(Archive& archive) {
+    archive.field("n_steps", n_steps_);
+    archive.field("steps_done", steps_done_);
   }
 
 private:

@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::uint8_t> bytes(data, data + size);
   if (size >= 32 && data[size - 1] % 2 == 0) {
     const std::uint64_t length = size;
-    std::memcpy(bytes.data(), "BOBACKP2", 8);
+    std::memcpy(bytes.data(), "BOBACKP3", 8);
     std::memcpy(bytes.data() + 8, &length, 8);
     const std::uint64_t sum = crc32_z(0, bytes.data(), size - 8);
     std::memcpy(bytes.data() + size - 8, &sum, 8);

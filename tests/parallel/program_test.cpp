@@ -34,8 +34,8 @@ TEST(ProgramOnRanks, WritesTheSameFiles) {
     expect_same_run(folder / "alone", folder / out);
     // All but the sums of the files: the column of speed in table.csv is never the same.
     const auto checkpoint = [&](const std::string& run) {
-      CheckpointData data = latest_checkpoint(folder / run / "checkpoints").data;
-      EXPECT_EQ(data.text.erase(output_record_name), 1U);
+      SavedState data = latest_checkpoint(folder / run / "checkpoints").data;
+      EXPECT_EQ(data.erase(output_record_name), 1U);
       std::filesystem::create_directories(folder / ("compared-" + run));
       return content_of(write_checkpoint(folder / ("compared-" + run), data));
     };

@@ -5,6 +5,7 @@
 #include "bpm/app/measure/frame_rest.h"
 #include "bpm/app/measure/frame_stress.h"
 #include "bpm/app/measure/grain_shapes.h"
+#include "bpm/archive/archive.h"
 #include "bpm/io/table.h"
 #include "bpm/measure/measure_plan.h"
 #include "bpm/measure/non_affine.h"
@@ -56,9 +57,8 @@ public:
   void set_frame_rest(std::shared_ptr<const FrameRest> rest) { frame_rest_ = std::move(rest); }
 
   /// What `motion` remembers of the frames so far, so that a run that goes on continues its tables.
-  std::vector<double> save_motion() const;
-  /// \throws std::runtime_error when the numbers belong to another packing.
-  void restore_motion(const std::vector<double>& saved);
+  /// \throws SavedStateError when what is read belongs to another packing.
+  void archive_motion(Archive& archive);
 
   /// What was found, for averages: strain and value of each frame, by the name of the quantity.
   struct Series {

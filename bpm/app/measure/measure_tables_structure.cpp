@@ -98,74 +98,80 @@ void MeasureTables::add_motion(const Frame& frame) {
 
 // Layout: box h, origin, periodic, strain | centres | displacements | per grain: number of neighbours, then
 // grain, vector, weight of each.
-std::vector<double> MeasureTables::save_motion() const {
-  std::vector<double> saved;
-  if (!past_) {
-    return saved;
-  }
-  const auto put = [&](const auto& numbers) {
-    saved.insert(saved.end(), numbers.data(), numbers.data() + numbers.size());
-  };
-  put(past_->box.h());
-  put(past_->box.origin());
-  for (const bool periodic : past_->box.periodic()) {
-    saved.push_back(periodic ? 1.0 : 0.0);
-  }
-  saved.push_back(past_->strain);
-  for (const Vector3& x : past_->centres) {
-    put(x);
-  }
-  for (const Vector3& u : past_->motion.displacements()) {
-    put(u);
-  }
-  for (const auto& list : past_->neighbours) {
-    saved.push_back(static_cast<double>(list.size()));
+namespace {
+
+/// Lists of neighbours as columns: how many each grain has, then of all neighbours in turn grain, vector and weight.
+void archive_neighbours(Archive& archive, NeighbourLists& lists) {
+  std::vector<std::int64_t> count, grain;
+  std::vector<Vector3> vector;
+  std::vector<double> weight;
+  for (const auto& list : lists) {
+    count.push_back(std::ssize(list));
     for (const Neighbour& neighbour : list) {
-      saved.push_back(neighbour.grain);
-      put(neighbour.vector);
-      saved.push_back(neighbour.weight);
+      grain.push_back(neighbour.grain);
+      vector.push_back(neighbour.vector);
+      weight.push_back(neighbour.weight);
     }
   }
-  return saved;
-}
-
-void MeasureTables::restore_motion(const std::vector<double>& saved) {
-  if (saved.empty()) {
+  archive.field("count", count);
+  archive.field("grain", grain);
+  archive.field("vector", vector);
+  archive.field("weight", weight);
+  if (!archive.is_reading()) {
     return;
   }
+  const std::size_t n = grain.size();
+  if (count.size() != lists.size() || vector.size() != n || weight.size() != n) {
+    archive.fail("count", "does not belong to this packing");
+  }
   std::size_t at = 0;
-  const auto take = [&] {
-    if (at >= saved.size()) {
-      throw std::runtime_error("the motion measured so far: numbers are missing; they belong to another packing");
-    }
-    return saved[at++];
-  };
-  const auto take_vector = [&] {
-    const double x = take(), y = take(), z = take();
-    return Vector3(x, y, z);
-  };
-  Matrix3 h;
-  for (double& number : h.reshaped()) {
-    number = take();
-  }
-  const Vector3 origin = take_vector(), periodic = take_vector();
-  const double strain = take();
-  Box box(origin, h.diagonal(), {h(0, 1), h(0, 2), h(1, 2)},
-          {periodic[0] != 0.0, periodic[1] != 0.0, periodic[2] != 0.0});
-  const auto n = static_cast<std::size_t>(topology_.n_grains());
-  std::vector<Vector3> centres(n), displacements(n);
-  std::generate(centres.begin(), centres.end(), take_vector);
-  std::generate(displacements.begin(), displacements.end(), take_vector);
-  NeighbourLists neighbours(n);
-  for (auto& list : neighbours) {
-    const double n_neighbours = take(); // from a file: a count only as long as there are numbers
-    for (std::int64_t i = 0; static_cast<double>(i) < n_neighbours; ++i) {
-      const int grain = static_cast<int>(take());
-      const Vector3 vector = take_vector();
-      list.push_back({grain, vector, take()});
+  for (std::size_t g = 0; g < lists.size(); ++g) {
+    for (std::int64_t k = 0; k < count[g]; ++k, ++at) {
+      if (at >= n || grain[at] < 0 || grain[at] >= std::ssize(lists)) {
+        archive.fail("grain", "does not belong to this packing");
+      }
+      lists[g].push_back({static_cast<int>(grain[at]), vector[at], weight[at]});
     }
   }
-  past_.emplace(Past{box, strain, centres, std::move(neighbours), NonAffineMotion(box, centres, displacements)});
+}
+
+} // namespace
+
+void MeasureTables::archive_motion(Archive& archive) {
+  bool has_past = past_.has_value();
+  archive.field("has_past", has_past);
+  if (!has_past) {
+    return;
+  }
+  Matrix3 h = past_ ? past_->box.h() : Matrix3();
+  Vector3 origin = past_ ? past_->box.origin() : Vector3();
+  std::array<bool, 3> periodic = past_ ? past_->box.periodic() : std::array<bool, 3>{};
+  double strain = past_ ? past_->strain : 0.0;
+  std::vector<Vector3> centres, displacements;
+  NeighbourLists neighbours(topology_.n_grains());
+  if (past_) {
+    centres = past_->centres;
+    displacements = past_->motion.displacements();
+    neighbours = past_->neighbours;
+  }
+  archive.field("cell_vectors", h);
+  archive.field("cell_origin", origin);
+  archive.field("periodic_x", periodic[0]);
+  archive.field("periodic_y", periodic[1]);
+  archive.field("periodic_z", periodic[2]);
+  archive.field("strain", strain);
+  archive.field("centres", centres);
+  archive.field("displacements", displacements);
+  archive.inside("neighbours", [&] { archive_neighbours(archive, neighbours); });
+  if (archive.is_reading()) {
+    const auto n_grains = static_cast<std::size_t>(topology_.n_grains());
+    if (centres.size() != n_grains || displacements.size() != n_grains) {
+      archive.fail("centres", "does not belong to this packing");
+    }
+    Box box(origin, Vector3::Ones(), Vector3::Zero(), periodic);
+    box.set_h(h);
+    past_.emplace(Past{box, strain, centres, std::move(neighbours), NonAffineMotion(box, centres, displacements)});
+  }
 }
 
 } // namespace boba

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forces, pressure and short runs against those that LAMMPS (the authors' branch) computed;
 // tests/data/forces/README.txt.
+#include "bpm/archive/archive.h"
 #include "bpm/dynamics/motion_archive.h"
 #include "bpm/dynamics/stepper.h"
 #include "bpm/dynamics/take_snapshot.h"
@@ -171,13 +172,15 @@ TEST(LammpsShear, VelocitiesRemapped) {
     stepper.assume_streaming(tilt_gradient(box));
     stepper.start();
     SavedState saved;
-    save_motion(stepper.moving(), saved);
-    std::vector<double>& numbers = saved.real["position"];
+    Archive to = Archive::saving_to(saved);
+    archive_motion(to, stepper.moving());
+    auto& numbers = std::get<SavedValue::Reals>(saved.at("position").values);
     for (std::size_t x = 0; x < numbers.size(); x += 3) {
       const Vector3 position(numbers[x], numbers[x + 1], numbers[x + 2]);
       numbers[x] -= tilt_rate * dt * box.image_of(position)[1];
     }
-    restore_motion(stepper.moving(), saved);
+    Archive from = Archive::reading_from(saved);
+    archive_motion(from, stepper.moving());
     for (int step = 0; step < n; ++step) {
       stepper.advance(Virial::full);
       stepper.deform_cell(tilt_gradient(stepper.box()), Matrix3::Zero());

@@ -210,8 +210,8 @@ TEST(Resume, AnotherInstructionSetAsksForLeave) {
   const TemporaryFolder folder;
   folder.file("scene.toml", small_scene);
   run_alone(folder, {"--set", "stage.2.strain=0.01"});
-  CheckpointData data = latest_checkpoint(folder / "alone/checkpoints").data;
-  data.text["instruction_set"] = "abacus";
+  SavedState data = latest_checkpoint(folder / "alone/checkpoints").data;
+  data.at("run.instruction_set").values = std::string("abacus");
   write_checkpoint(folder / "alone/checkpoints", data);
   const ProgramResult refused = boba({"resume", "alone"}, folder);
   EXPECT_EQ(refused.exit_code, 2);
@@ -225,9 +225,9 @@ TEST(Resume, WrongNumbersUnderARightChecksumAreRefused) {
   for (const char* precision : {"double", "mixed"}) {
     std::filesystem::remove_all(folder / "alone");
     run_alone(folder, {"--set", "stage.2.strain=0.01", "--set", std::string("run.precision=") + precision});
-    const CheckpointData right = latest_checkpoint(folder / "alone/checkpoints").data;
+    const SavedState right = latest_checkpoint(folder / "alone/checkpoints").data;
     const auto expect_refused = [&](const char* what, auto change) {
-      CheckpointData wrong = right;
+      SavedState wrong = right;
       change(wrong);
       write_checkpoint(folder / "alone/checkpoints", wrong);
       const ProgramResult refused = boba({"resume", "alone"}, folder);
@@ -235,12 +235,47 @@ TEST(Resume, WrongNumbersUnderARightChecksumAreRefused) {
       EXPECT_NE(refused.err.find(".boba: "), std::string::npos) << refused.err;
       EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
     };
-    using Data = CheckpointData;
-    expect_refused("a node at 1e300", [](Data& d) { d.real["packing/position"][4] = 1e300; });
-    expect_refused("r0", [](Data& d) { d.real["packing/template0/r0"][7] *= 1.05; });
-    expect_refused("negative r0", [](Data& d) { d.real["packing/template0/r0"][7] = -1.0; });
-    expect_refused("corner", [](Data& d) { d.real["packing/origin"][1] = std::numeric_limits<double>::infinity(); });
+    const auto reals = [](SavedState& d, const char* name) -> SavedValue::Reals& {
+      return std::get<SavedValue::Reals>(d.at(name).values);
+    };
+    expect_refused("a node at 1e300", [&](SavedState& d) { reals(d, "packing.position")[4] = 1e300; });
+    expect_refused("r0", [&](SavedState& d) { reals(d, "packing.templates.0.bond_length")[7] *= 1.05; });
+    expect_refused("negative r0", [&](SavedState& d) { reals(d, "packing.templates.0.bond_length")[7] = -1.0; });
+    expect_refused(
+        "corner", [&](SavedState& d) { reals(d, "packing.cell.origin")[1] = std::numeric_limits<double>::infinity(); });
   }
+}
+
+/// Whatever a field is: without it, or with a text in its place, the run does not continue, and one sentence says why.
+TEST(Resume, AFieldThatIsMissingOrOfAnotherTypeIsNamed) {
+  const TemporaryFolder folder;
+  folder.file("scene.toml", small_scene);
+  ASSERT_EQ(boba({"run", "scene.toml", "--wall-time", "0.05"}, folder).exit_code, 75);
+  const SavedState whole = latest_checkpoint(folder / "out/checkpoints").data;
+  for (const char* name : {"run.scene", "packing.grains.alpha", "packing.templates.0.bond_length", "simulation.step",
+                           "simulation.position", "simulation.cell.map", "simulation.totals.stress",
+                           "simulation.stage.name", "output.table.last_step"}) {
+    for (const bool is_missing : {true, false}) {
+      SavedState data = whole;
+      ASSERT_TRUE(data.contains(name)) << name;
+      if (is_missing) {
+        data.erase(name);
+      } else {
+        data[name] = std::string(name) == "run.scene" || std::string(name) == "simulation.stage.name"
+                         ? SavedValue{SavedValue::Integers{1}, {}}
+                         : SavedValue{std::string("eleven"), {}};
+      }
+      write_checkpoint(folder / "out/checkpoints", data);
+      const ProgramResult refused = boba({"resume", "out"}, folder);
+      EXPECT_EQ(refused.exit_code, 2) << name << refused.err;
+      EXPECT_NE(refused.err.find(std::string(name) + (is_missing ? " is missing" : " holds ")), std::string::npos)
+          << name << "\n"
+          << refused.err;
+      EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
+    }
+  }
+  write_checkpoint(folder / "out/checkpoints", whole);
+  EXPECT_EQ(boba({"resume", "out"}, folder).exit_code, 0);
 }
 
 TEST(Resume, AScenesInputFilesMayBeGone) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/app/output_record.h"
 #include "bpm/io/checkpoint.h"
 #include "bpm/io/trajectory.h"
 #include "tests/robustness/app/small_scene.h"
@@ -39,10 +40,13 @@ inline void expect_same_run(const std::filesystem::path& a, const std::filesyste
     EXPECT_EQ(x.velocity, y.velocity) << "frame " << frame;
     EXPECT_EQ(x.grain_stress, y.grain_stress) << "frame " << frame;
   }
-  const CheckpointData end = latest_checkpoint(a / "checkpoints").data,
-                       other = latest_checkpoint(b / "checkpoints").data;
-  EXPECT_EQ(end.real, other.real);
-  EXPECT_EQ(end.integer, other.integer);
+  SavedState end = latest_checkpoint(a / "checkpoints").data, other = latest_checkpoint(b / "checkpoints").data;
+  for (SavedState* state : {&end, &other}) {
+    // Its path and options differ, and the sums of its files: the column of speed in table.csv is never the same.
+    std::erase_if(*state, [](const auto& field) { return field.first.starts_with("run."); });
+    EXPECT_EQ(state->erase(output_record_name), 1U);
+  }
+  EXPECT_TRUE(end == other) << "the last checkpoints differ";
 }
 
 } // namespace boba::test

@@ -77,7 +77,12 @@ TEST(Schedule, ShearThatTurnsIsSampledByItsPath) {
   for (const std::int64_t stop : {1, 499, 500, 501, 777, 1001}) {
     Schedule first(every, StrainPath(0.0), 0.0);
     std::vector<std::int64_t> parts = due_from(first, 0, stop);
-    Schedule second(every, StrainPath::restored(first.path().saved()), 0.1 * static_cast<double>(stop));
+    SavedState saved;
+    StrainPath path = first.path(), restored(0.0);
+    Archive to = Archive::saving_to(saved), from = Archive::reading_from(saved);
+    path.archive(to);
+    restored.archive(from);
+    Schedule second(every, restored, 0.1 * static_cast<double>(stop));
     const std::vector<std::int64_t> rest = due_from(second, stop, 1200);
     parts.insert(parts.end(), rest.begin(), rest.end());
     EXPECT_EQ(parts, expected) << "stopped at " << stop;

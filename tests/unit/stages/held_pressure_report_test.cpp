@@ -28,8 +28,11 @@ TEST(HeldPressureReport, WarnsOfATargetThatWasMissed) {
   EXPECT_EQ(report.text().rfind("warning", 0), 0u) << report.text();
   EXPECT_NE(report.text().find("25 % of its steps"), std::string::npos) << report.text();
   HeldPressureReport again;
-  const std::vector<double> n = report.numbers();
-  again.restore(n[0], n[1], n[2], n[3], n[4]);
+  SavedState state;
+  Archive to = Archive::saving_to(state);
+  report.archive(to);
+  Archive from = Archive::reading_from(state);
+  again.archive(from);
   EXPECT_EQ(again.text(), report.text());
 }
 
