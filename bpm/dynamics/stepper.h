@@ -54,7 +54,7 @@ public:
   std::int64_t step() const { return moving_.step; }
   double time() const { return moving_.time(); }
   double strain() const { return moving_.cell.strain(); }
-  double node_diameter() const { return moving_.material.diameter; }
+  double contact_range() const { return moving_.forces.contact_range(); } ///< between grains, d
   const Ranks& ranks() const { return moving_.ranks(); }
   const Distribution& distribution() const { return moving_.distribution; }
 

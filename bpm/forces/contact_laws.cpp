@@ -41,7 +41,8 @@ bool is_taken(const std::string& parameter) {
   };
   const std::vector<ContactLawEntry>& laws = contact_laws();
   return parameter == "k" || parameter == "gamma" || parameter == "contact" ||
-         parameter == ContactLaw::k3_parameter.name || std::any_of(laws.begin(), laws.end(), has);
+         parameter == contact_diameter_parameter.name || parameter == ContactLaw::k3_parameter.name ||
+         std::any_of(laws.begin(), laws.end(), has);
 }
 
 } // namespace

@@ -25,10 +25,10 @@ Vector3 lattice_vector(const Box& box, const ImageVector& n) {
 
 } // namespace
 
-ContactList::ContactList(const LaneLayout& layout, const kernels::KernelTable& table, double diameter, double skin,
-                         const Distribution& distribution)
-    : layout_(layout), table_(table), diameter_(diameter), skin_(skin), skin_between_(between_share * skin),
-      fast_motion_(0.1 * reserve()), distribution_(distribution) {
+ContactList::ContactList(const LaneLayout& layout, const kernels::KernelTable& table, const ContactRanges& ranges,
+                         double skin, const Distribution& distribution)
+    : layout_(layout), table_(table), diameter_(ranges.between), inner_diameter_(ranges.inside), skin_(skin),
+      skin_between_(between_share * skin), fast_motion_(0.1 * reserve()), distribution_(distribution) {
   layout_changed();
   for (const Block& block : layout.blocks()) {
     if (static_cast<std::int64_t>(block.n_nodes) * block.n_lanes > std::numeric_limits<std::int32_t>::max()) {
@@ -158,7 +158,7 @@ bool ContactList::search_holds(const ContactPair& pair) const {
                      [&](const Vector3& place) { return gap.normal.dot(pair.frame_b(place)) >= gap.first_of_b; });
 }
 
-/// Distance that the pair's unlisted nodes keep at present.
+/// Distance that the pair's unlisted nodes keep at present; nodes of the same grain later_inside() less.
 ///
 /// A pair of nodes at the distance s >= apart when searched is now at least s (1 - e) - R - the two deviations,
 /// with e the shortening of b's frame since then and R the largest relative displacement of the two frames where the
@@ -168,7 +168,7 @@ double ContactList::guarantee(const ContactPair& pair, const Box& box) const {
   const GrainFrame moved_b = second_frame(pair, box).after(pair.frame_b.inverse());
   const double e = shortening(moved_b.linear);
   if (pair.inside()) {
-    return pair.apart * (1.0 - e) - 2.0 * a.deviation;
+    return pair.apart * (1.0 - e) - 2.0 * a.deviation + later_inside();
   }
   const GrainFrame moved_a = a.frame.after(pair.frame_a.inverse());
   double slid = 0.0;
@@ -310,11 +310,10 @@ bool ContactList::near_holds() const {
   return kept_distance(near_reach_, cell_since_near_, motion_since_near_) >= diameter_;
 }
 
-double ContactList::begin_near() {
+void ContactList::begin_near() {
   near_reach_ = std::min(guaranteed_, diameter_ + std::max(least_near_margin, near_steps * last_approach_));
   motion_since_near_ = 0.0;
   cell_since_near_ = Matrix3::Identity();
-  return near_reach_;
 }
 
 void ContactList::list_near() {

@@ -18,6 +18,12 @@ namespace boba {
 struct GhostRecord;
 struct PlaceRecord;
 
+/// Distances below which two unbonded nodes touch, d.
+struct ContactRanges {
+  double between = 1.0; ///< of different grains, or of a grain and an image of itself
+  double inside = 1.0;  ///< of the same grain; at most `between`
+};
+
 /// Candidate contacts of every pair of grains.
 ///
 /// A grain's nodes are noted once by their places in its frame, an affine map that is fitted to the grain again and
@@ -36,7 +42,7 @@ class ContactList {
 public:
   /// Grains of other ranks near ours are followed as their owners see them (contact_ghosts.cpp); update is then
   /// collective.
-  ContactList(const LaneLayout& layout, const kernels::KernelTable& table, double diameter, double skin,
+  ContactList(const LaneLayout& layout, const kernels::KernelTable& table, const ContactRanges& ranges, double skin,
               const Distribution& distribution = Distribution::alone());
 
   /// Makes sure that no contact of the present state is missing; true when the list changed. `network_of_grain` as
@@ -66,9 +72,11 @@ public:
   std::span<const std::int32_t> listed(int grain) const { return grains_[grain].listed; }
   /// True as long as no candidate can have come to touch that was not near when near candidates were last found.
   bool near_holds() const;
-  /// Distance below which a candidate is near from now on, d: chosen so that it holds for some steps of the present
-  /// motion. The candidates of followed nodes are near whatever their distance.
-  double begin_near();
+  /// Sets the distance below which a candidate is near from now on: chosen so that it holds for some steps of the
+  /// present motion. The candidates of followed nodes are near whatever their distance.
+  void begin_near();
+  /// That distance for the nodes of a pair, d: nodes of the same grain touch later.
+  double near_reach(const ContactPair& pair) const { return near_reach_ - (pair.inside() ? later_inside() : 0.0); }
   /// Nodes of a grain that are in any pair's near candidates, ascending; known after list_near.
   std::span<const std::int32_t> near(int grain) const { return grains_[grain].near; }
   /// Lists the nodes of the near candidates and the pairs that have any, once they have been found.
@@ -110,7 +118,9 @@ private:
   using NodePairs = std::vector<kernels::NodePair>;
 
   double reach_between() const { return diameter_ + skin_between_; }
-  double reach_inside() const { return diameter_ + skin_; }
+  double reach_inside() const { return inner_diameter_ + skin_; }
+  /// Distances inside a grain count as larger by this, and are then compared with those between grains.
+  double later_inside() const { return diameter_ - inner_diameter_; }
   double reserve() const { return reserve_share * skin_; }
 
   /// Share of the skin that is left for motion between two looks at the grains.
@@ -180,7 +190,7 @@ private:
 
   const LaneLayout& layout_;
   const kernels::KernelTable& table_;
-  double diameter_, skin_, skin_between_;
+  double diameter_, inner_diameter_, skin_, skin_between_;
   bool built_ = false;
   Matrix3 cell_since_tracking_ = Matrix3::Identity(), cell_since_neighbours_ = Matrix3::Identity();
   /// All pairs of nodes that are not listed were farther apart when the grains were last tracked, d; and those of

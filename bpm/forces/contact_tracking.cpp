@@ -112,7 +112,8 @@ void ContactList::track_block(int b, const LaneState& state) {
 
 bool ContactList::out_of_shape(const TrackedGrain& grain, int n_nodes) const {
   const double e = shortening(grain.frame.linear);
-  return !(e <= largest_shortening) || !(reach_inside() * (1.0 - e) - 2.0 * grain.deviation >= diameter_ + reserve()) ||
+  return !(e <= largest_shortening) ||
+         !(reach_inside() * (1.0 - e) - 2.0 * grain.deviation >= inner_diameter_ + reserve()) ||
          static_cast<double>(grain.n_moved + static_cast<std::int64_t>(grain.moved.size())) >
              largest_moved_share * n_nodes;
 }

@@ -5,6 +5,7 @@
 #include "bpm/forces/lane_kernels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace boba {
@@ -18,7 +19,8 @@ kernels::ContactCandidates ForceField::seen_by_kernels(const ContactPair& pair,
           nodes_of_[pair.b], {shift[0], shift[1], shift[2]},          {velocity[0], velocity[1], velocity[2]}};
 }
 
-void ForceField::find_near(ContactPair& pair, const Box& box, double reach) {
+void ForceField::find_near(ContactPair& pair, const Box& box) {
+  const double reach = contact_list_.near_reach(pair);
   pair.touches.clear(); // a pair without near candidates is not evaluated
   if (pair.candidates.empty()) {
     pair.near.clear();
@@ -45,9 +47,13 @@ void ForceField::contacts_between(ContactPair& pair, const Box& box, const Evalu
     rows.resize(capacity);
   }
   pair.sums = no_contacts;
-  const std::int64_t n_touching = contact_->evaluate(seen_by_kernels(pair, pair.near, box, what.residual_rate),
-                                                     rows.data(), touches.data(), pair.sums);
+  const ContactModel& law = pair.inside() ? *inner_contact_ : *contact_;
+  const std::int64_t n_touching =
+      law.evaluate(seen_by_kernels(pair, pair.near, box, what.residual_rate), rows.data(), touches.data(), pair.sums);
   pair.touches.assign(touches.begin(), touches.begin() + n_touching);
+  if (n_touching > 0 && law.range() < contact_->range()) { // so that one distance tells the largest overlap of all
+    pair.sums.smallest_r2 = std::pow(std::sqrt(pair.sums.smallest_r2) + contact_->range() - law.range(), 2);
+  }
 }
 
 void ForceField::collect(int grain, std::span<const std::int32_t> nodes, const LaneState& state) {
@@ -99,10 +105,10 @@ void ForceField::list_near(const Box& box) {
     halo_.end();
   }
   std::vector<ContactPair>& pairs = contact_list_.pairs();
-  const double reach = contact_list_.begin_near();
+  contact_list_.begin_near();
 #pragma omp parallel for schedule(dynamic, 4)
   for (int p = 0; p < static_cast<int>(pairs.size()); ++p) {
-    find_near(pairs[p], box, reach);
+    find_near(pairs[p], box);
   }
   contact_list_.list_near();
   if (distribution_.is_distributed()) {

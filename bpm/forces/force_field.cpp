@@ -39,8 +39,10 @@ void share_grain_sums(std::vector<GrainSums>& grains, const Distribution& distri
 
 ForceField::ForceField(const Packing& packing, const LaneLayout& layout, const Material& material, double skin,
                        const Distribution& distribution)
-    : layout_(layout), material_(material), contact_(contact_model(material)), table_(kernels::best_table()),
-      contact_list_(layout, table_, material.diameter, skin, distribution), distribution_(distribution) {
+    : layout_(layout), material_(material), contact_(contact_model(between_grains(material))),
+      inner_contact_(material.contact_diameter ? contact_model(material) : contact_), table_(kernels::best_table()),
+      contact_list_(layout, table_, {contact_->range(), inner_contact_->range()}, skin, distribution),
+      distribution_(distribution) {
   for (const auto& grain_template : packing.templates) {
     networks_.emplace_back(*grain_template);
     has_periodic_template_ = has_periodic_template_ || grain_template->period.has_value();
@@ -302,7 +304,7 @@ ContactTotals ForceField::contact_totals() const {
     totals.energy += e;
   }
   totals.n_touching = distribution_.ranks->sum(sides) / 2;
-  totals.largest_overlap = smallest_r2 < no_contact_r2 ? material_.diameter - std::sqrt(smallest_r2) : 0.0;
+  totals.largest_overlap = smallest_r2 < no_contact_r2 ? contact_->range() - std::sqrt(smallest_r2) : 0.0;
   return totals;
 }
 

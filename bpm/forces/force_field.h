@@ -98,6 +98,8 @@ public:
   };
   Stretch largest_stretch(const LaneState& state, const Box& box) const;
 
+  /// Distance below which nodes of different grains feel each other, d.
+  double contact_range() const { return contact_->range(); }
   ContactList& contact_list() { return contact_list_; }
   const ContactList& contact_list() const { return contact_list_; }
   Walls& walls() { return walls_; }
@@ -132,7 +134,7 @@ private:
   kernels::ContactCandidates seen_by_kernels(const ContactPair& pair, const std::vector<kernels::NodePair>& pairs,
                                              const Box& box, const Matrix3& residual_rate) const;
   /// Finds the candidates closer than the reach, and those of followed nodes.
-  void find_near(ContactPair& pair, const Box& box, double reach);
+  void find_near(ContactPair& pair, const Box& box);
   void contacts_between(ContactPair& pair, const Box& box, const Evaluation& what);
   template <class Coordinate, class Real>
   void add_contacts(int grain, const kernels::LaneKernels<Coordinate, Real>& lane_kernels, Real* f, bool with_sums);
@@ -181,7 +183,8 @@ private:
 
   const LaneLayout& layout_;
   Material material_;
-  std::shared_ptr<const ContactModel> contact_; ///< the law between nodes, and between nodes and walls
+  std::shared_ptr<const ContactModel> contact_; ///< between nodes of different grains, and between nodes and walls
+  std::shared_ptr<const ContactModel> inner_contact_; ///< between nodes of the same grain
   const kernels::KernelTable& table_;
   std::vector<NetworkData> networks_;
   std::vector<const NetworkData*> network_of_grain_;

@@ -36,9 +36,10 @@ class NetworkBuilder {
 public:
   /// For the contacts of these grains.
   NetworkBuilder(const Box& box, const GrainNodes& grains, const Material& material, const DealtItems& items)
-      : box_(box), grains_(grains), material_(material), law_(contact_model(material)), bounds_(bounds_of(grains)),
-        centres_(grain_centres(grains)), neighbours_(grains.n_grains()), grids_(grains.n_grains()) {
-    const GrainNeighbours all(bounds_, box, material.diameter);
+      : box_(box), grains_(grains), material_(material), law_(contact_model(between_grains(material))),
+        bounds_(bounds_of(grains)), centres_(grain_centres(grains)), neighbours_(grains.n_grains()),
+        grids_(grains.n_grains()) {
+    const GrainNeighbours all(bounds_, box, law_->range());
     parallel_loop(items, [&](std::int64_t g) { neighbours_[g] = first_side_neighbours(all, static_cast<int>(g)); });
     std::vector<char> needed(grains.n_grains(), 0);
     for (std::int64_t k = 0; k < items.n_own(); ++k) {
@@ -48,7 +49,7 @@ public:
     }
     parallel_loop(grains.n_grains(), [&](std::int64_t g) {
       if (needed[g]) {
-        grids_[g] = GrainGrid(grains.nodes_of(static_cast<int>(g)), bounds_[g], material.diameter);
+        grids_[g] = GrainGrid(grains.nodes_of(static_cast<int>(g)), bounds_[g], law_->range());
       }
     });
   }
@@ -59,8 +60,7 @@ public:
     for (const NeighbourGrain& neighbour : neighbours_[grain]) {
       const Vector3 shift = box_.h() * Vector3(neighbour.image.a, neighbour.image.b, neighbour.image.c);
       pairs.clear();
-      add_pairs_between(grids_[grain], grids_[neighbour.other], GrainFrame{}.displaced(shift), material_.diameter,
-                        pairs);
+      add_pairs_between(grids_[grain], grids_[neighbour.other], GrainFrame{}.displaced(shift), law_->range(), pairs);
       GrainContact contact = contact_from(grain, neighbour.other, shift, pairs);
       if (contact.n_pairs > 0) {
         contact.image = {neighbour.image.a, neighbour.image.b, neighbour.image.c};
@@ -90,12 +90,12 @@ private:
     for (const kernels::NodePair& pair : pairs) {
       const Vector3 from_other = own[pair.i] - (others[pair.j] + shift);
       const double r = from_other.norm();
-      if (!(r < material_.diameter)) {
+      if (!(r < law_->range())) {
         continue;
       }
       const double force = law_->force(r, 0.0);
       contact.force += force * (r > 0.0 ? Vector3(from_other / r) : Vector3(Vector3::Zero()));
-      contact.largest_overlap = std::max(contact.largest_overlap, material_.diameter - r);
+      contact.largest_overlap = std::max(contact.largest_overlap, law_->range() - r);
       midpoints.push_back(own[pair.i] - 0.5 * from_other);
     }
     if (midpoints.empty()) {

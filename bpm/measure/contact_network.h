@@ -10,7 +10,8 @@
 
 namespace boba::measure {
 
-/// Two grains that touch: at least one node of the one is closer than the contact distance to a node of the other.
+/// Two grains that touch: at least one node of the one is closer than the range of the contact law to a node of the
+/// other.
 struct GrainContact {
   int grain = 0, other = 0;         ///< grain <= other; equal when a grain touches its own image
   std::array<int, 3> image{};       ///< the other grain's copy is displaced by h image

@@ -298,6 +298,9 @@ Scene read_tree(const std::string& text, const std::filesystem::path& path, cons
   const SceneTable& material = tables.table("material");
   scene.material.k = material.real("k", scene.material.k);
   scene.material.gamma = material.real("gamma", scene.material.gamma);
+  if (const auto diameter = material.maybe_real(contact_diameter_parameter.name)) {
+    scene.material.contact_diameter = *diameter; // absent where the scene says nothing: one law for all contacts
+  }
   read_contact_law(material, scene.material);
   read_measures(tables, scene);
   read_templates(tables, scene);

@@ -122,9 +122,10 @@ std::vector<SceneKey> contact_law_keys() {
 
 std::vector<SceneSection> material_sections() {
   return {
-      section(
-          "material", "Constants that all grains share.",
-          joined({parameter_key(BondLaw::k_parameter), parameter_key(BondLaw::gamma_parameter)}, contact_law_keys())),
+      section("material", "Constants that all grains share.",
+              joined({parameter_key(BondLaw::k_parameter), parameter_key(BondLaw::gamma_parameter),
+                      parameter_key(contact_diameter_parameter)},
+                     contact_law_keys())),
       repeated(
           "template", "An undeformed grain. Built once, then read from the cache (`~/.cache/boba`, or BOBA_CACHE_DIR).",
           {required(text_key("name", "", "what [[species]] calls it")),

@@ -56,7 +56,7 @@ Packing InsertStart::make(const StartContext& context) const {
   insertion.packing_fraction = packing_fraction_;
   insertion.rotate = rotate_;
   insertion.seed = context.seed;
-  insertion.diameter = context.material.diameter;
+  insertion.diameter = between_grains(context.material).diameter;
   return at_random ? insert_at_random(insertion) : insert_on_lattice(insertion, arrangement_);
 }
 

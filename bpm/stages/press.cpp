@@ -20,7 +20,7 @@ void PressDriver::begin(Stepper& stepper) {
 
 void PressDriver::begin_walls(Stepper& stepper) {
   const std::array<double, 2> z = extent_z(stepper.moving());
-  const double reach = 0.5 * stepper.node_diameter(); // where a wall begins to feel a node
+  const double reach = 0.5 * stepper.contact_range(); // where a wall begins to feel a node
   stepper.ends().set_walls({z[0] - reach, z[1] + reach}, stage_.velocity);
   height_ = z[1] - z[0] + 2.0 * reach;
 }

@@ -79,21 +79,23 @@ PlainForces plain_forces(const Packing& packing, const Material& m, int n_images
       }
     }
   }
+  const std::vector<int> grain = packing.topology(false).grain_of_node();
   for (std::size_t i = 0; i < x.size(); ++i) {
     for (std::size_t j = 0; j < x.size(); ++j) {
       const Vector3 d = x[i] - x[j];
       for (std::size_t k = 0; k < shifts.size(); ++k) {
-        if (!((d - shifts[k]).squaredNorm() < m.diameter * m.diameter)) {
+        const bool home = shifts[k].isZero(0.0);
+        const double diameter = home && grain[i] == grain[j] ? m.diameter : m.contact_diameter.value_or(m.diameter);
+        if (!((d - shifts[k]).squaredNorm() < diameter * diameter)) {
           continue;
         }
-        const bool home = shifts[k].isZero(0.0);
         if (home && (i == j || bonded.count({static_cast<std::int64_t>(i), static_cast<std::int64_t>(j)}) > 0)) {
           continue;
         }
         const Pair pair = pair_of(x[i], x[j] + shifts[k], v[i], v[j] + shift_velocities[k]);
-        const Real overlap = m.diameter - pair.r;
+        const Real overlap = diameter - pair.r;
         const Real f = m.k * overlap + m.k3 * overlap * overlap * overlap -
-                       m.gamma * (1 - std::pow(pair.r / m.diameter, 8)) * pair.vn;
+                       m.gamma * (1 - std::pow(pair.r / diameter, 8)) * pair.vn;
         add(sums, i, pair, f, 0.5);
         ++sums.n_contacts;
       }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace boba::test {
 namespace {
@@ -13,9 +14,12 @@ namespace {
 // A list that lives for many steps and one that is made anew at every step find the same contacts: the same bits come
 // out, while grains are sheared, squeezed and turned, the cell flips and single nodes are shot through the packing.
 TEST(ContactLists, ThatLiveLongMissNothing) {
-  for (const Remap remap : {Remap::positions, Remap::velocities}) {
+  const std::pair<Remap, Material> cases[] = {
+      {Remap::positions, {}}, {Remap::positions, {.contact_diameter = 1.3}}, {Remap::velocities, {}}};
+  for (const auto& [remap, material] : cases) {
     const Precision precision = remap == Remap::positions ? Precision::full : Precision::mixed;
-    Stepper lasting(nine_grains(), {}, {.precision = precision}), fresh(nine_grains(), {}, {.precision = precision});
+    Stepper lasting(nine_grains(), material, {.precision = precision});
+    Stepper fresh(nine_grains(), material, {.precision = precision});
     Snapshot end[2];
     for (Stepper* stepper : {&lasting, &fresh}) {
       stepper->start();

@@ -116,6 +116,35 @@ TEST(ForceField, OtherConstants) {
   expect_agreement(small_packing({.box = cube}), {.gamma = 0.0});
 }
 
+// Nodes of different grains, and of images of the same one, touch at contact_diameter, those inside a grain at d.
+TEST(ForceField, ContactDiameterBetweenGrains) {
+  for (const double contact_diameter : {1.0, 1.2, 1.5}) {
+    expect_agreement(small_packing({.box = tilted, .n_grains = 9}), {.contact_diameter = contact_diameter});
+    expect_agreement(small_packing({.box = Box({0, 0, 0}, {4.4, 4.4, 4.4}, {1.5, 0.5, -1.0}), .n_grains = 1}),
+                     {.contact_diameter = contact_diameter}, Matrix3::Zero(), 3);
+  }
+}
+
+TEST(ForceField, ContactDiameterOfAWall) {
+  const Packing packing = small_packing({.box = Box({0, 0, 0}, {30, 30, 30}), .n_grains = 1, .speed = 0.0});
+  const LaneLayout layout(packing);
+  const auto wall_force = [&](const Material& material, double below) {
+    double lowest = 1e9;
+    for (const Vector3& x : packing.position) {
+      lowest = std::min(lowest, x.z());
+    }
+    LaneState state(packing, layout);
+    ForceField forces(packing, layout, material, 0.3);
+    forces.walls().set({{.point = {0.0, 0.0, lowest - below}}});
+    forces.evaluate(state, packing.box, {});
+    return forces.walls()[0].force;
+  };
+  EXPECT_EQ(wall_force({}, 0.55), 0.0);
+  EXPECT_EQ(wall_force({.contact_diameter = 1.2}, 0.61), 0.0);
+  // One node 0.59 d from the plane: its mirror image is 1.18 d away, an overlap of 0.02 d.
+  EXPECT_NEAR(wall_force({.k3 = 0.0, .contact_diameter = 1.2}, 0.59), 0.02, 1e-12);
+}
+
 TEST(ForceField, CellSmallerThanAGrain) {
   // One ball of radius 2.5 in a cell of 4.5: it touches its own images on all sides, some of them twice removed.
   expect_agreement(small_packing({.box = Box({0, 0, 0}, {4.4, 4.4, 4.4}, {1.5, 0.5, -1.0}), .n_grains = 1}), {},

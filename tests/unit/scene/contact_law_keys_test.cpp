@@ -27,6 +27,8 @@ TEST(ContactLawKeys, ChooseALawAndItsParameters) {
         .material;
   };
   EXPECT_EQ(material("").contact, "hookean");
+  EXPECT_FALSE(material("").contact_diameter);
+  EXPECT_EQ(material("contact_diameter = 1.25\n").contact_diameter, 1.25);
   EXPECT_EQ(material("contact = \"parabolic\"\n").contact_parameters, std::vector<double>{3.0});
   EXPECT_EQ(material("contact = \"parabolic\"\nextra = 0.5\n").contact_parameters, std::vector<double>{0.5});
   const auto refusal = [&](const std::string& keys) -> std::string {
@@ -40,6 +42,7 @@ TEST(ContactLawKeys, ChooseALawAndItsParameters) {
   EXPECT_NE(refusal("extra = 0.5\n").find("belongs to contact = \"parabolic\""), std::string::npos);
   EXPECT_NE(refusal("contact = \"parabolic\"\nk3 = 1.0\n").find("belongs to contact = \"hookean\""), std::string::npos);
   EXPECT_NE(refusal("contact = \"parabolic\"\nextra = 11.0\n").find("must be"), std::string::npos);
+  EXPECT_NE(refusal("contact_diameter = 0.9\n").find("contact_diameter"), std::string::npos);
   EXPECT_NE(refusal("contact = \"none\"\n").find("parabolic"), std::string::npos);
   EXPECT_NE(refusal("contact = \"hertz\"\n").find("needs hertz_modulus"), std::string::npos);
   EXPECT_NE(refusal("hertz_modulus = 1.0\n").find("nodes = 1"), std::string::npos);
