@@ -30,5 +30,7 @@ CommandBody add_forces_command(CLI::App& app);
 CommandBody add_info_command(CLI::App& app);
 CommandBody add_measure_command(CLI::App& app);
 CommandBody add_plot_command(CLI::App& app);
+CommandBody add_report_command(CLI::App& app);
+CommandBody add_watch_command(CLI::App& app);
 
 } // namespace boba

@@ -27,6 +27,8 @@ const std::array commands = {
     Command{"forces", "forces and pressure tensor of a LAMMPS data file of bonded grains", add_forces_command},
     Command{"measure", "measure the stored frames of a run", add_measure_command},
     Command{"plot", "panels and pictures of runs", add_plot_command},
+    Command{"report", "one HTML file that shows runs", add_report_command},
+    Command{"watch", "a run in a browser while it goes on", add_watch_command},
     Command{"info", "version, instruction set, scene reference", add_info_command},
 };
 
