@@ -2,8 +2,16 @@
 # Headers, libraries and the package file of find_package(boba).
 include(CMakePackageConfigHelpers)
 
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/bpm DESTINATION ${BOBA_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN "*.h")
+set(header_folders base bpm)
+if(BOBA_BUILD_CONTINUUM OR BOBA_BUILD_CALIBRATION)
+  list(APPEND header_folders continuum)
+endif()
+if(BOBA_BUILD_CALIBRATION)
+  list(APPEND header_folders calibration)
+endif()
+foreach(folder ${header_folders})
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/${folder} DESTINATION ${BOBA_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+endforeach()
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/boba)
 install(EXPORT boba_targets NAMESPACE boba:: DESTINATION ${package_folder})

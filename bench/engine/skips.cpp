@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/engine/skips.h"
 
+#include "base/bounds.h"
 #include "bpm/grain/template_cache.h"
 
 #include <algorithm>
@@ -18,12 +19,7 @@ Packing swinging_grains(const Lattice& lattice) {
   TemplateSpec spec;
   spec.n_nodes = 5137;
   const auto grain = std::make_shared<const GrainTemplate>(TemplateCache().get(spec));
-  Vector3 low = grain->position.front(), high = low;
-  for (const Vector3& x : grain->position) {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
-  const Vector3 apart = high - low + Vector3::Constant(lattice.gap);
+  const Vector3 apart = bounds_of(grain->position).extent() + Vector3::Constant(lattice.gap);
   const Eigen::Array3i number = lattice.alone ? Eigen::Array3i(1, 1, 1) : Eigen::Array3i(4, 2, 2);
   std::vector<Placement> placements;
   for (int g = 0; g < number.prod(); ++g) {

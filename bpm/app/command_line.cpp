@@ -3,7 +3,6 @@
 
 #include "bpm/app/command.h"
 #include "bpm/app/on_ranks.h"
-#include "bpm/app/sibling.h"
 #include "bpm/app/standard_streams.h"
 #include "bpm/app/thread_waiting.h"
 #include "bpm/app/version.h"
@@ -33,18 +32,28 @@ const std::array commands = {
 };
 
 /// Programs of their own, started with the arguments that follow.
-struct Sibling {
+struct OtherProgram {
   const char* name;
   const char* summary;
   const char* program;
   const char* subcommand; ///< put in front of the arguments, or nullptr
 };
 
-constexpr std::array siblings = {
-    Sibling{"continuum", "start boba-continuum: cylinder and sphere by finite elements", "boba-continuum", nullptr},
-    Sibling{"calibrate", "start boba-calibrate: (k, alpha) to (E, nu) and back", "boba-calibrate", nullptr},
-    Sibling{"compare", "start boba-calibrate compare: particles against the continuum", "boba-calibrate", "compare"},
+constexpr std::array other_programs = {
+    OtherProgram{"continuum", "start boba-continuum: cylinder and sphere by finite elements", "boba-continuum",
+                 nullptr},
+    OtherProgram{"calibrate", "start boba-calibrate: (k, alpha) to (E, nu) and back", "boba-calibrate", nullptr},
+    OtherProgram{"compare", "start boba-calibrate compare: particles against the continuum", "boba-calibrate",
+                 "compare"},
 };
+
+[[noreturn]] void start(const OtherProgram& other, const std::vector<std::string>& arguments) {
+  std::vector<std::string> all = arguments;
+  if (other.subcommand != nullptr) {
+    all.insert(all.begin(), other.subcommand);
+  }
+  replace_process(program_beside(other.program), all);
+}
 
 int report(const std::string& message, ExitCode code) {
   print_error("boba: " + printable(message));
@@ -56,15 +65,15 @@ std::string unknown_command(int argc, char** argv) {
   const std::string word = argc > 1 ? argv[1] : "";
   const auto is_word = [&word](const auto& known) { return word == known.name; };
   if (word.empty() || word.front() == '-' || std::any_of(commands.begin(), commands.end(), is_word) ||
-      std::any_of(siblings.begin(), siblings.end(), is_word)) {
+      std::any_of(other_programs.begin(), other_programs.end(), is_word)) {
     return "";
   }
   std::string names;
   for (const auto& command : commands) {
     names += std::string(command.name) + ", ";
   }
-  for (const auto& sibling : siblings) {
-    names += std::string(sibling.name) + (&sibling == &siblings.back() ? "" : ", ");
+  for (const auto& other : other_programs) {
+    names += std::string(other.name) + (&other == &other_programs.back() ? "" : ", ");
   }
   const std::string advice = word.ends_with(".toml") ? fmt::format("; a scene is run by: boba run {}", word) : "";
   return fmt::format("{}: there is no such command{}; there are {}", word, advice, names);
@@ -96,8 +105,8 @@ int run_command(int argc, char** argv) {
     CLI::App* sub = app.add_subcommand(command.name, command.summary);
     bodies.emplace_back(sub, command.add(*sub));
   }
-  for (const Sibling& sibling : siblings) {
-    app.add_subcommand(sibling.name, sibling.summary)->prefix_command();
+  for (const OtherProgram& other : other_programs) {
+    app.add_subcommand(other.name, other.summary)->prefix_command();
   }
   try {
     app.parse(argc, argv);
@@ -130,10 +139,10 @@ int run_command_line(int argc, char** argv) {
   secure_standard_streams();
   shorten_thread_waiting(argv);
   try {
-    for (const Sibling& sibling : siblings) {
+    for (const OtherProgram& other : other_programs) {
       // Handed over whole, before anything here could take an argument (--help, -o) for its own.
-      if (argc > 1 && std::string_view(argv[1]) == sibling.name) {
-        return start_sibling(sibling.program, sibling.subcommand, {argv + 2, argv + argc});
+      if (argc > 1 && std::string_view(argv[1]) == other.name) {
+        start(other, {argv + 2, argv + argc});
       }
     }
     return run_command(argc, argv);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/program.h"
 #include "bpm/app/command.h"
-#include "bpm/app/sibling.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@ namespace boba {
 
 namespace {
 
-/// The plot program: beside the installed program's data, or in the source tree a build folder belongs to.
+/// The plot program, in data_folder().
 std::filesystem::path plot_script() {
-  std::filesystem::path installed = program_folder().parent_path() / "share/boba/plot";
+  std::filesystem::path installed = data_folder() / "plot";
   if (!std::filesystem::exists(installed)) {
     throw std::runtime_error(fmt::format("plot: {} is missing", installed.string()));
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/thread_waiting.h"
 
+#include "base/program.h"
+
 #include <cstdlib>
-#include <filesystem>
-#include <unistd.h>
 
 namespace boba {
 
@@ -12,13 +12,7 @@ void shorten_thread_waiting(char** argv) {
     return;
   }
   if (setenv("GOMP_SPINCOUNT", "2000", 0) == 0) {
-    // By its own path, so that the process keeps its name. A call returns only when it fails: then the run is slower,
-    // not wrong.
-    std::error_code error;
-    if (const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error); !error) {
-      execv(own.c_str(), argv);
-    }
-    execv("/proc/self/exe", argv);
+    restart_process(argv); // returns only when it fails: then the run is slower, not wrong
   }
 }
 

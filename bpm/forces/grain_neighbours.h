@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/forces/bounds.h"
+#include "base/bounds.h"
 #include "bpm/packing/box.h"
 
 #include <compare>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/grain/near_pairs.h"
 
+#include "base/bounds.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -23,13 +25,9 @@ public:
       origin_ = -0.5 * *period;
       length = *period;
     } else {
-      Vector3d low = position.front(), high = position.front();
-      for (const Vector3d& x : position) {
-        low = low.cwiseMin(x);
-        high = high.cwiseMax(x);
-      }
-      origin_ = low;
-      length = (high - low).cwiseMax(cutoff);
+      const Bounds bounds = bounds_of(position);
+      origin_ = bounds.low;
+      length = bounds.extent().cwiseMax(cutoff);
     }
     for (int a = 0; a < 3; ++a) {
       count_[a] = std::clamp(static_cast<int>(length[a] / cutoff), 1, 1000);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/grain/spatial_order.h"
 
+#include "base/bounds.h"
+#include "base/hilbert_curve.h"
+
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <numeric>
 
@@ -15,60 +17,21 @@ using Eigen::Vector3d;
 
 constexpr int levels = 16;
 
-unsigned rotate_right(unsigned b, int by) {
-  return ((b >> by) | (b << (3 - by))) & 7u;
-}
-unsigned rotate_left(unsigned b, int by) {
-  return ((b << by) | (b >> (3 - by))) & 7u;
-}
-unsigned gray(unsigned i) {
-  return i ^ (i >> 1);
-}
-unsigned inverse_gray(unsigned g) {
-  return g ^ (g >> 1) ^ (g >> 2);
-}
-/// Corner of octant i (in curve order) where the curve enters it.
-unsigned entry_corner(unsigned i) {
-  return i == 0 ? 0 : gray((i - 1) & ~1u);
-}
-/// Axis along which the curve runs inside octant i, relative to its parent's.
-int inner_axis(unsigned i) {
-  return i == 0 ? 0 : std::countr_one(i % 2 == 0 ? i - 1 : i) % 3;
-}
-
-std::uint64_t hilbert_index(const std::array<std::uint32_t, 3>& cell) {
-  std::uint64_t index = 0;
-  unsigned entry = 0;
-  int axis = 0;
-  for (int level = levels - 1; level >= 0; --level) {
-    const unsigned octant = (cell[0] >> level & 1u) | (cell[1] >> level & 1u) << 1 | (cell[2] >> level & 1u) << 2;
-    const int turn = (axis + 1) % 3;
-    const unsigned i = inverse_gray(rotate_right(octant ^ entry, turn));
-    index = index << 3 | i;
-    entry ^= rotate_left(entry_corner(i), turn);
-    axis = (axis + inner_axis(i) + 1) % 3;
-  }
-  return index;
-}
-
 } // namespace
 
 std::vector<int> hilbert_order(const std::vector<Vector3d>& position) {
   if (position.empty()) {
     return {};
   }
-  Vector3d low = position.front(), high = position.front();
-  for (const Vector3d& x : position) {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
+  const Bounds bounds = bounds_of(position);
   const double cells = static_cast<double>(1u << levels);
-  const double scale = (cells - 1.0) / std::max((high - low).maxCoeff(), 1e-300);
+  const double scale = (cells - 1.0) / std::max(bounds.extent().maxCoeff(), 1e-300);
   std::vector<std::uint64_t> index(position.size());
   for (std::size_t n = 0; n < position.size(); ++n) {
-    const Vector3d c = scale * (position[n] - low);
+    const Vector3d c = scale * (position[n] - bounds.low);
     index[n] = hilbert_index(
-        {static_cast<std::uint32_t>(c.x()), static_cast<std::uint32_t>(c.y()), static_cast<std::uint32_t>(c.z())});
+        {static_cast<std::uint32_t>(c.x()), static_cast<std::uint32_t>(c.y()), static_cast<std::uint32_t>(c.z())},
+        levels);
   }
   std::vector<int> order(position.size());
   std::iota(order.begin(), order.end(), 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/grain/template_cache.h"
 
+#include "base/bounds.h"
 #include "bpm/grain/bond_network.h"
 #include "bpm/grain/build_template.h"
 #include "bpm/grain/template_file.h"
@@ -35,13 +36,8 @@ bool belongs_to(const TemplateSpec& spec, const GrainTemplate& grain) {
   if (!(std::abs(grain.reference_volume - volume) <= 1e-9 * volume)) {
     return false;
   }
-  Eigen::Vector3d low = grain.position.front(), high = low;
-  for (const Eigen::Vector3d& x : grain.position) {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
   // Grains are compact: their bounding cuboid is not far larger than what they stand for.
-  if (!(((high - low).array() + spec.bond_cutoff).prod() <= 1e3 * (volume + 1e3))) {
+  if (!((bounds_of(grain.position).extent().array() + spec.bond_cutoff).prod() <= 1e3 * (volume + 1e3))) {
     return false;
   }
   const std::vector<Bond> bonds = bonds_closer_than(grain.position, spec.bond_cutoff, grain.period);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/grain/template_file.h"
 
+#include "base/hdf5/hdf5_file.h"
 #include "bpm/grain/sound_template.h"
-#include "bpm/hdf5/hdf5_file.h"
 
 #include <cstdint>
 #include <fmt/format.h>

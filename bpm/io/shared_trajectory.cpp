@@ -42,10 +42,10 @@ SharedTrajectory::SharedTrajectory(const Ranks& ranks, const std::filesystem::pa
     : ranks_(ranks), first_node_(std::move(first_node)) {
   ranks.on_root([&] {
     writer_.emplace(open(ranks.is_distributed()));
-    has_rooms_ = writer_->has_rooms();
+    allocates_frames_ = writer_->can_allocate_frames();
   });
   if (ranks.is_distributed()) {
-    ranks.broadcast(has_rooms_);
+    ranks.broadcast(allocates_frames_);
     ranks.collectively([&] { file_.emplace(path); });
   }
 }
@@ -72,15 +72,15 @@ void SharedTrajectory::write_together(const Snapshot& own) {
   } frame;
   ranks_.on_root([&] {
     frame.is_new = writer_->is_new(own);
-    if (frame.is_new && has_rooms_) {
-      frame.places = writer_->make_room(own);
+    if (frame.is_new && allocates_frames_) {
+      frame.places = writer_->allocate_frame(own);
     }
   });
   ranks_.broadcast(frame);
   if (!frame.is_new) {
     return;
   }
-  if (!has_rooms_) {
+  if (!allocates_frames_) {
     write_gathered(own);
     return;
   }

@@ -23,7 +23,7 @@ public:
                    const Open& open);
 
   /// The snapshot holds this rank's nodes (Snapshot::grains); which rank has which grain may change between frames.
-  /// A frame without rooms (compressed, or beyond 4 GiB) rank 0 gathers and writes alone.
+  /// A frame that cannot be allocated first (compressed, or beyond 4 GiB) rank 0 gathers and writes alone.
   void write(const Snapshot& own);
   void close();
   /// Frames in the file, on rank 0.
@@ -38,7 +38,7 @@ private:
   std::vector<std::int64_t> first_node_;
   std::optional<TrajectoryWriter> writer_; ///< on rank 0
   std::optional<SharedFile> file_;         ///< with several ranks
-  bool has_rooms_ = true;
+  bool allocates_frames_ = true;
 };
 
 } // namespace boba

@@ -24,7 +24,7 @@ struct TrajectoryOrigin {
 struct TrajectoryOptions {
   bool velocity = false;        ///< store velocities; every snapshot then needs them
   int compression = 0;          ///< 0 (none, fastest) .. 9 of the node data
-  bool nodes_by_others = false; ///< nodes of frames are put into the file by several ranks, see make_room
+  bool nodes_by_others = false; ///< nodes of frames are put into the file by several ranks, see allocate_frame
 };
 
 /// Writes an H5MD 1.1 file frame by frame: positions and images, box, each grain's centre and stress, strain, and once
@@ -59,13 +59,14 @@ public:
     std::uint64_t position = 0, image = 0, velocity = 0; ///< 0 for velocities that are not stored
   };
   /// write() in two halves, for nodes that others put there in between; only of a file made or opened with
-  /// `nodes_by_others` that has_rooms(), and only of a frame that is new. The snapshot's nodes are not looked at.
-  NodePlaces make_room(const Snapshot& snapshot);
+  /// `nodes_by_others` that can_allocate_frames(), and only of a frame that is new. The snapshot's nodes are not looked
+  /// at.
+  NodePlaces allocate_frame(const Snapshot& snapshot);
   void finish(const Snapshot& snapshot);
   /// False for the step that was written last. \throws std::invalid_argument when it goes back in time.
   bool is_new(const Snapshot& snapshot) const;
   /// Are a frame's nodes one piece of the file as they lie in memory? Otherwise one writer must put them there.
-  bool has_rooms() const;
+  bool can_allocate_frames() const;
   /// From now on nothing reaches the file any more: it stays as it was last flushed.
   void give_up();
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/hdf5/hdf5_file.h"
+#include "base/hdf5/hdf5_file.h"
 
 #include <cstdint>
 #include <limits>

@@ -181,7 +181,7 @@ bool TrajectoryWriter::is_new(const Snapshot& snapshot) const {
   return true;
 }
 
-bool TrajectoryWriter::has_rooms() const {
+bool TrajectoryWriter::can_allocate_frames() const {
   return impl_->file.has_whole_frames(value_of(position));
 }
 
@@ -240,15 +240,15 @@ void TrajectoryWriter::write(const Snapshot& snapshot) {
   out.finish(snapshot);
 }
 
-TrajectoryWriter::NodePlaces TrajectoryWriter::make_room(const Snapshot& snapshot) {
+TrajectoryWriter::NodePlaces TrajectoryWriter::allocate_frame(const Snapshot& snapshot) {
   Impl& out = *impl_;
   out.prepare(snapshot);
   NodePlaces places;
-  places.image = out.file.make_room<std::int32_t>(value_of(image), out.frame());
+  places.image = out.file.allocate_frame<std::int32_t>(value_of(image), out.frame());
   if (out.has_velocity) {
-    places.velocity = out.file.make_room<double>(value_of(velocity), out.frame());
+    places.velocity = out.file.allocate_frame<double>(value_of(velocity), out.frame());
   }
-  places.position = out.file.make_room<double>(value_of(position), out.frame());
+  places.position = out.file.allocate_frame<double>(value_of(position), out.frame());
   return places;
 }
 
@@ -257,7 +257,7 @@ void TrajectoryWriter::finish(const Snapshot& snapshot) {
 }
 
 void TrajectoryWriter::give_up() {
-  impl_->file.let_go();
+  impl_->file.detach();
 }
 
 std::int64_t TrajectoryWriter::n_frames() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/grain_spectrum.h"
 
+#include "base/bounds.h"
 #include "bpm/measure/lane_products.h"
 
 #include <algorithm>
@@ -66,18 +67,18 @@ SpectrumPlan::SpectrumPlan(const Box& box, const ReciprocalLattice& lattice)
 
 SpectrumPlan::Block SpectrumPlan::spread(std::span<const Vector3> nodes) const {
   std::vector<Vector3> at(nodes.size()); // in units of the grid
-  Vector3 low = Vector3::Constant(1e300), high = Vector3::Constant(-1e300);
+  Bounds bounds;
   const Vector3 s0 = box_.to_fractional(nodes.front()).array().floor(); // whole cells change nothing and cost digits
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     at[i] = (box_.to_fractional(nodes[i]) - s0).cwiseProduct(Vector3(grid_[0], grid_[1], grid_[2]));
-    low = low.cwiseMin(at[i]);
-    high = high.cwiseMax(at[i]);
+    bounds.include(at[i]);
   }
   Block block;
   for (int axis = 0; axis < 3; ++axis) {
-    block.first[axis] = static_cast<std::int64_t>(std::ceil(low[axis] - 0.5 * width));
+    block.first[axis] = static_cast<std::int64_t>(std::ceil(bounds.low[axis] - 0.5 * width));
     block.size[axis] =
-        static_cast<int>(static_cast<std::int64_t>(std::ceil(high[axis] - 0.5 * width)) - block.first[axis]) + width;
+        static_cast<int>(static_cast<std::int64_t>(std::ceil(bounds.high[axis] - 0.5 * width)) - block.first[axis]) +
+        width;
   }
   block.size[2] = padded(block.size[2]);
   block.value.assign(static_cast<std::size_t>(block.size[0]) * block.size[1] * block.size[2], 0.0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/packing_fraction.h"
 
+#include "base/bounds.h"
 #include "bpm/measure/parallel_loop.h"
 #include "bpm/measure/philox.h"
 #include "bpm/measure/point_grid.h"
@@ -45,15 +46,12 @@ struct HullPlanes {
   std::vector<double> offset;
   Vector3 centre = Vector3::Zero();
   double inner_radius_squared = 0.0;
-  Vector3 fractional_low, fractional_high;
+  Bounds fractional; ///< in units of the cell
 
   HullPlanes(const ConvexHull& hull, const Box& box) {
-    fractional_low.setConstant(std::numeric_limits<double>::infinity());
-    fractional_high.setConstant(-std::numeric_limits<double>::infinity());
     for (const Vector3& x : hull.vertex) {
       centre += x / static_cast<double>(hull.vertex.size());
-      fractional_low = fractional_low.cwiseMin(box.to_fractional(x));
-      fractional_high = fractional_high.cwiseMax(box.to_fractional(x));
+      fractional.include(box.to_fractional(x));
     }
     double inner_radius = std::numeric_limits<double>::infinity();
     for (int t = 0; t < hull.n_triangles(); ++t) {
@@ -153,7 +151,7 @@ private:
   void mark(int grain, const PointGrid& grid, Marks& marks) const {
     if (!planes_.empty() && !planes_[grain].normal.empty()) {
       const HullPlanes& planes = planes_[grain];
-      grid.visit_range(planes.fractional_low, planes.fractional_high, [&](std::int64_t p, const Vector3& image) {
+      grid.visit_range(planes.fractional.low, planes.fractional.high, [&](std::int64_t p, const Vector3& image) {
         if (planes.contains(image)) {
           Marks::set(marks.in_hull[p]);
         }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/scattering.h"
 
+#include "base/bounds.h"
 #include "bpm/measure/grain_spectrum.h"
 #include "bpm/measure/parallel_loop.h"
 #include "bpm/measure/phase_sums.h"
@@ -135,13 +136,11 @@ std::array<double, 2> costs(const Box& box, const GrainNodes& grains, const Reci
   std::vector<std::array<double, 2>> of_grain(grains.n_grains());
   parallel_loop(items, [&](std::int64_t g) {
     const auto nodes = grains.nodes_of(static_cast<int>(g));
-    Vector3 low = Vector3::Constant(1e300), high = -low;
+    Bounds fractional;
     for (const Vector3& x : nodes) {
-      const Vector3 s = box.to_fractional(x);
-      low = low.cwiseMin(s);
-      high = high.cwiseMax(s);
+      fractional.include(box.to_fractional(x));
     }
-    of_grain[g] = {nodes.empty() ? 0.0 : plan.cost(nodes.size(), plan.block_size(high - low)),
+    of_grain[g] = {nodes.empty() ? 0.0 : plan.cost(nodes.size(), plan.block_size(fractional.extent())),
                    static_cast<double>(nodes.size()) * static_cast<double>(lattice.n_vectors())};
   });
   items.share(of_grain);

@@ -40,20 +40,4 @@ Tensor6 kinetic_stress(const Box& box, std::span<const Vector3> positions, std::
   return {sum(0, 0), sum(1, 1), sum(2, 2), sum(0, 1), sum(0, 2), sum(1, 2)};
 }
 
-double inertial_number(double rate, double diameter, double density, double pressure) {
-  if (!(diameter > 0.0 && density > 0.0 && pressure > 0.0)) {
-    throw std::invalid_argument(fmt::format("inertial number: diameter {}, density {} and pressure {} must be positive",
-                                            diameter, density, pressure));
-  }
-  return rate * diameter * std::sqrt(density / pressure);
-}
-
-double normalised_pressure(double pressure, double young_modulus, double poisson_ratio) {
-  if (!(young_modulus > 0.0) || !(poisson_ratio >= -1.0 && poisson_ratio <= 0.5)) {
-    throw std::invalid_argument(fmt::format(
-        "normalised pressure: E = {} must be positive and nu = {} between -1 and 0.5", young_modulus, poisson_ratio));
-  }
-  return pressure * (2.0 - 2.0 * poisson_ratio * poisson_ratio) / young_modulus;
-}
-
 } // namespace boba::measure

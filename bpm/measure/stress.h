@@ -29,15 +29,4 @@ StressSummary summarise_stress(const Tensor6& stress);
 Tensor6 kinetic_stress(const Box& box, std::span<const Vector3> positions, std::span<const Vector3> velocities,
                        double node_mass = 1.0, const Matrix3& gradient = Matrix3::Zero());
 
-/// I = rate D sqrt(rho / P): shear rate times grain diameter over the time in which pressure moves a grain.
-///
-/// \param rate 1/tau  \param diameter of a grain, d  \param density mass of a grain over its volume, m/d^3
-/// \param pressure k/d, positive
-/// \throws std::invalid_argument for a pressure, density or diameter that is not positive.
-double inertial_number(double rate, double diameter, double density, double pressure);
-
-/// P~ = P (2 - 2 nu^2) / E: pressure over the effective (Hertz) modulus.
-/// \throws std::invalid_argument for E <= 0 or nu outside [-1, 0.5].
-double normalised_pressure(double pressure, double young_modulus, double poisson_ratio);
-
 } // namespace boba::measure

@@ -26,10 +26,14 @@ double PackingNumbers::phi_reference(const Box& box) const {
 }
 
 double PackingNumbers::inertial_number(double rate, double pressure) const {
+  return boba::inertial_number(rate, grain_diameter, density, pressure);
+}
+
+double inertial_number(double rate, double diameter, double density, double pressure) {
   if (rate == 0.0) {
     return 0.0;
   }
-  return pressure > 0.0 ? std::abs(rate) * grain_diameter * std::sqrt(density / pressure)
+  return pressure > 0.0 ? std::abs(rate) * diameter * std::sqrt(density / pressure)
                         : std::numeric_limits<double>::quiet_NaN();
 }
 

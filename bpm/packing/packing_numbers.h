@@ -9,6 +9,13 @@
 
 namespace boba {
 
+/// I = |rate| D sqrt(rho / P): shear rate times grain diameter over the time in which pressure moves a grain; 0 without
+/// shear, not-a-number without pressure.
+///
+/// \param rate 1/tau  \param diameter of a grain, d  \param density mass of a grain over its volume, m/d^3
+/// \param pressure k/d
+double inertial_number(double rate, double diameter, double density, double pressure);
+
 /// Constants of a packing that turn sums into the numbers of docs/notation.md, "Derived numbers".
 struct PackingNumbers {
   double reference_volume = 0.0; ///< d^3, sum over grains
@@ -23,7 +30,7 @@ struct PackingNumbers {
   double normalised(double pressure) const;
   /// Reference volume of all grains over the cell's volume; not the packing fraction of deformed grains.
   double phi_reference(const Box& box) const;
-  /// rate D sqrt(rho / P); 0 without shear.
+  /// boba::inertial_number of the mean grain.
   double inertial_number(double rate, double pressure) const;
 };
 

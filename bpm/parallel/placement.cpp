@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/parallel/placement.h"
 
+#include "base/hilbert_curve.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -10,34 +13,7 @@ namespace boba {
 
 namespace {
 
-constexpr int bits = 10; // of a coordinate
-
-/// Skilling's transposed form: turns axes into the digits of the place along the curve.
-void to_curve(std::uint32_t (&x)[3]) {
-  for (std::uint32_t q = 1U << (bits - 1); q > 1; q >>= 1) {
-    const std::uint32_t p = q - 1;
-    for (std::uint32_t& value : x) {
-      if ((value & q) != 0) {
-        x[0] ^= p;
-      } else {
-        const std::uint32_t t = (x[0] ^ value) & p;
-        x[0] ^= t;
-        value ^= t;
-      }
-    }
-  }
-  x[1] ^= x[0];
-  x[2] ^= x[1];
-  std::uint32_t t = 0;
-  for (std::uint32_t q = 1U << (bits - 1); q > 1; q >>= 1) {
-    if ((x[2] & q) != 0) {
-      t ^= q - 1;
-    }
-  }
-  for (std::uint32_t& value : x) {
-    value ^= t;
-  }
-}
+constexpr int levels = 10; // 2^10 cells a side
 
 /// Grains that may share a block, each group in order of their numbers.
 std::map<std::pair<int, bool>, std::vector<int>> groups_of(const Packing& packing) {
@@ -86,26 +62,19 @@ std::vector<Vector3> fractional_centres(const Packing& packing) {
 
 } // namespace
 
-std::uint32_t hilbert_place(const Vector3& fractional) {
-  std::uint32_t x[3];
-  for (int c = 0; c < 3; ++c) {
-    const double inside = fractional[c] - std::floor(fractional[c]);
-    x[c] = std::min(static_cast<std::uint32_t>(inside * (1 << bits)), (1U << bits) - 1);
+std::uint64_t place_along_curve(const Vector3& fractional) {
+  std::array<std::uint32_t, 3> cell;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double inside = fractional[axis] - std::floor(fractional[axis]);
+    cell[axis] = std::min(static_cast<std::uint32_t>(inside * (1 << levels)), (1U << levels) - 1);
   }
-  to_curve(x);
-  std::uint32_t place = 0;
-  for (int bit = bits - 1; bit >= 0; --bit) {
-    for (const std::uint32_t value : x) {
-      place = place << 1 | (value >> bit & 1U);
-    }
-  }
-  return place;
+  return hilbert_index(cell, levels);
 }
 
 std::vector<int> along_curve(std::span<const int> grains, std::span<const Vector3> fractional) {
   std::vector<int> order(grains.begin(), grains.end());
   std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return hilbert_place(fractional[a]) < hilbert_place(fractional[b]); });
+                   [&](int a, int b) { return place_along_curve(fractional[a]) < place_along_curve(fractional[b]); });
   return order;
 }
 

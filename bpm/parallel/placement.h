@@ -12,8 +12,7 @@
 namespace boba {
 
 /// Place of a point of the unit cube along a Hilbert curve of 2^10 cells a side.
-/// Source: J. Skilling, "Programming the Hilbert curve", AIP Conf. Proc. 707, 381 (2004).
-std::uint32_t hilbert_place(const Vector3& fractional);
+std::uint64_t place_along_curve(const Vector3& fractional);
 
 /// What placement looks at.
 struct PlacementInput {

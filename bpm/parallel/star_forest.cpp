@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/parallel/star_forest.h"
 
+#include "base/program.h"
+
 #include <dlfcn.h>
 #include <filesystem>
 #include <fmt/format.h>
@@ -16,7 +18,7 @@ const StarForestModule* loaded = nullptr;
 
 /// ../lib/boba beside the program, in the build tree as installed; on Debian below lib/<architecture> too.
 const StarForestModule* load() {
-  const fs::path root = fs::canonical("/proc/self/exe").parent_path().parent_path();
+  const fs::path root = program_folder().parent_path();
   std::string reasons;
   for (const char* folder : {"lib/boba", "lib/x86_64-linux-gnu/boba", "lib64/boba"}) {
     const fs::path file = root / folder / "boba_petsc.so";

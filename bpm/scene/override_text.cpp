@@ -3,7 +3,7 @@
 
 #include "bpm/io/input_error.h"
 #include "bpm/io/printable.h"
-#include "bpm/scene/toml_node.h"
+#include "bpm/toml/toml_node.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/scene/poisson_table.h"
 
+#include "base/program.h"
 #include "bpm/io/input_error.h"
-#include "bpm/scene/toml_node.h"
+#include "bpm/toml/toml_node.h"
 
 #include <algorithm>
 #include <cmath>
@@ -125,8 +126,7 @@ PoissonTable::PoissonTable(const std::filesystem::path& file) : file_(file) {
 }
 
 PoissonTable PoissonTable::installed() {
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
-  return PoissonTable(program.parent_path().parent_path() / "share/boba/poisson_table.toml");
+  return PoissonTable(data_folder() / "poisson_table.toml");
 }
 
 double PoissonTable::alpha_of_poisson(double poisson, double k) const {

@@ -38,7 +38,7 @@ class PoissonTable {
 public:
   /// \throws InputError when the file is missing, is not such a table, or is not monotone.
   explicit PoissonTable(const std::filesystem::path& file);
-  /// The table that was installed with the running program: ../share/boba/poisson_table.toml beside its folder.
+  /// The installed table: poisson_table.toml in data_folder().
   static PoissonTable installed();
 
   /// \throws InputError with the allowed interval when it lies outside the table.

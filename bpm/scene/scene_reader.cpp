@@ -7,8 +7,8 @@
 #include "bpm/scene/scene.h"
 #include "bpm/scene/scene_schema.h"
 #include "bpm/scene/scene_stages.h"
-#include "bpm/scene/scene_table.h"
 #include "bpm/stages/start_registry.h"
+#include "bpm/toml/scene_table.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/scene/schema.h"
+#include "bpm/toml/schema.h"
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bpm/scene/scene.h"
-#include "bpm/scene/scene_table.h"
+#include "bpm/toml/scene_table.h"
 
 #include <memory>
 #include <optional>

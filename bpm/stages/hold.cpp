@@ -2,7 +2,7 @@
 #include "bpm/stages/hold.h"
 
 #include "bpm/dynamics/stepper.h"
-#include "bpm/scene/schema.h"
+#include "bpm/toml/schema.h"
 
 namespace boba {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/stages/insert.h"
 
-#include "bpm/scene/schema.h"
+#include "bpm/toml/schema.h"
 
 #include <fmt/format.h>
 #include <stdexcept>

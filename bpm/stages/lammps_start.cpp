@@ -2,7 +2,7 @@
 #include "bpm/stages/lammps_start.h"
 
 #include "bpm/io/lammps_packing.h"
-#include "bpm/scene/schema.h"
+#include "bpm/toml/schema.h"
 
 #include <utility>
 

@@ -3,7 +3,7 @@
 
 #include "bpm/dynamics/stepper.h"
 #include "bpm/laws/hertz.h"
-#include "bpm/scene/schema.h"
+#include "bpm/toml/schema.h"
 
 #include <algorithm>
 #include <cmath>

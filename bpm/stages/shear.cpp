@@ -2,7 +2,7 @@
 #include "bpm/stages/shear.h"
 
 #include "bpm/dynamics/stepper.h"
-#include "bpm/scene/schema.h"
+#include "bpm/toml/schema.h"
 
 #include <cmath>
 

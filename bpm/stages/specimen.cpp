@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/stages/specimen.h"
 
+#include "base/bounds.h"
 #include "bpm/packing/insertion.h"
-#include "bpm/scene/schema.h"
+#include "bpm/toml/schema.h"
 
 namespace boba {
 
@@ -34,14 +35,9 @@ Packing SpecimenStart::make(const StartContext& context) const {
   if (shape.period) {
     return make_packing(Box(-0.5 * *shape.period, *shape.period), context.templates, placed);
   }
-  Vector3 low = shape.position.front(), high = low;
-  for (const Vector3& x : shape.position) {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
-  low.array() -= margin_;
-  high.array() += margin_;
-  return make_packing(Box(low, high - low, Vector3::Zero(), {false, false, false}), context.templates, placed);
+  const Bounds around = bounds_of(shape.position).widened(margin_);
+  return make_packing(Box(around.low, around.extent(), Vector3::Zero(), {false, false, false}), context.templates,
+                      placed);
 }
 
 } // namespace boba

@@ -4,7 +4,7 @@
 #include "bpm/dynamics/stage_driver.h"
 #include "bpm/laws/material.h"
 #include "bpm/packing/packing_numbers.h"
-#include "bpm/scene/scene_table.h"
+#include "bpm/toml/scene_table.h"
 
 #include <memory>
 #include <string>

@@ -4,7 +4,7 @@
 #include "bpm/grain/template_spec.h"
 #include "bpm/laws/material.h"
 #include "bpm/packing/packing.h"
-#include "bpm/scene/scene_table.h"
+#include "bpm/toml/scene_table.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/stages/start_registry.h"
 
-#include "bpm/scene/schema.h"
 #include "bpm/stages/insert.h"
 #include "bpm/stages/lammps_start.h"
 #include "bpm/stages/specimen.h"
 #include "bpm/stages/trajectory_start.h"
+#include "bpm/toml/schema.h"
 
 #include <algorithm>
 #include <fmt/format.h>

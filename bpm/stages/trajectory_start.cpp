@@ -2,7 +2,7 @@
 #include "bpm/stages/trajectory_start.h"
 
 #include "bpm/io/trajectory_packing.h"
-#include "bpm/scene/schema.h"
+#include "bpm/toml/schema.h"
 
 namespace boba {
 

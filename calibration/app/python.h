@@ -6,7 +6,7 @@
 
 namespace boba::calibration {
 
-/// Runs one of this folder's scripts (installed beside the tables) with Debian's python3; false when it fails.
+/// Runs one of Boba's scripts (in data_folder()) with Debian's python3; false when it fails.
 bool run_python(const std::string& script, const std::vector<std::string>& arguments);
 
 } // namespace boba::calibration

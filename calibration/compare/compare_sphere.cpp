@@ -142,66 +142,65 @@ double contact_radius(const json& contact) {
   return force > 0.0 ? std::sqrt(2.5 * moment / force) : 0.0;
 }
 
+/// A model of the sphere. `plate`: distance from the centre at which the plate meets the layer. A continuum's layer has
+/// no thickness, so its plate is moved in by what the layer stands out.
+struct SphereModel {
+  const char* name;
+  double plate, c1, c3;
+  const char* law;
+};
+
+/// The loads of one model, a null for each load whose plate does not reach it. Plates are at the same places for every
+/// model; a model that reaches less far meets them later.
+json run_model(const ComparisonSettings& settings, const Solid& solid, const Surface& surface,
+               const SphereModel& sphere) {
+  ContinuumModel model{.name = fmt::format("{}_{:g}", sphere.name, solid.alpha),
+                       .radius = surface.body,
+                       .young = solid.constants.young(),
+                       .poisson = solid.constants.poisson(),
+                       .c1 = sphere.c1,
+                       .c3 = sphere.c3,
+                       .law = sphere.law,
+                       .compression = solid.compression};
+  if (!settings.fields || std::string(sphere.name) != "finite_layer") {
+    model.more = {"--no-fields"};
+  }
+  json all = json::array();
+  std::vector<double> approaches;
+  for (const double load : settings.loads) {
+    const double approach = 2.0 * (sphere.plate - surface.radius * (1.0 - load));
+    approach > 0.0 ? approaches.push_back(approach) : all.push_back(nullptr);
+  }
+  json loads = run_continuum("sphere", model, "approach", approaches, settings.folder);
+  for (json& load : loads) {
+    load["foam_terms"] = model.law == "foam" ? model.foam_terms : 0;
+    all.push_back(load);
+  }
+  if (model.law == "foam" && loads.size() < approaches.size()) {
+    // Two terms may run away beyond the strains they were fitted to; there one term, which fits less well.
+    model.foam_terms = 1;
+    json simpler = run_continuum("sphere", model, "approach", approaches, settings.folder);
+    for (std::size_t l = loads.size(); l < simpler.size(); ++l) {
+      simpler[l]["foam_terms"] = 1;
+      all.push_back(simpler[l]);
+    }
+  }
+  return all;
+}
+
 /// The models: what is changed from one to the next tells the reasons for a difference apart.
 json run_models(const ComparisonSettings& settings, const Solid& solid, const Surface& surface) {
+  const double layer = surface.radius, c1 = surface.c1, c3 = surface.c3;
   json results;
-  // `plate`: distance from the centre at which the plate meets the layer. A continuum's layer has no thickness, so its
-  // plate is moved in by what the layer stands out.
-  const auto run = [&](const char* name, double radius, double plate, double c1, double c3, const char* law) {
-    ContinuumModel model{.name = fmt::format("{}_{:g}", name, solid.alpha),
-                         .radius = radius,
-                         .young = solid.constants.young(),
-                         .poisson = solid.constants.poisson(),
-                         .c1 = c1,
-                         .c3 = c3,
-                         .law = law,
-                         .compression = solid.compression};
-    if (!settings.fields || std::string(name) != "finite_layer") {
-      model.more = {"--no-fields"};
+  for (const SphereModel& model :
+       {SphereModel{"linear", layer, 0.0, 0.0, ""},
+        SphereModel{"linear_springs", surface.springs.radius, surface.springs.c1, surface.springs.c3, ""},
+        SphereModel{"linear_layer", layer, c1, c3, ""}, SphereModel{"finite", layer, 0.0, 0.0, "foam"},
+        SphereModel{"finite_layer", layer, c1, c3, "foam"}, SphereModel{"neo_layer", layer, c1, c3, "neo-hookean"}}) {
+    if (settings.models.empty() || std::ranges::find(settings.models, model.name) != settings.models.end()) {
+      results[model.name] = run_model(settings, solid, surface, model);
     }
-    std::vector<double> approaches;
-    std::size_t skipped = 0;
-    for (const double load :
-         settings.loads) { // plates at the same places for every model; a smaller reach meets them later
-      const double approach = 2.0 * (plate - surface.radius * (1.0 - load));
-      approach > 0.0 ? approaches.push_back(approach) : static_cast<void>(++skipped);
-    }
-    json loads = run_continuum("sphere", model, "approach", approaches, settings.folder);
-    for (json& load : loads) {
-      load["foam_terms"] = model.law == "foam" ? model.foam_terms : 0;
-    }
-    if (model.law == "foam" && loads.size() < approaches.size()) {
-      // Two terms may run away beyond the strains they were fitted to; there one term, which fits less well.
-      model.foam_terms = 1;
-      json simpler = run_continuum("sphere", model, "approach", approaches, settings.folder);
-      for (std::size_t l = loads.size(); l < simpler.size(); ++l) {
-        loads.push_back(simpler[l]);
-        loads.back()["foam_terms"] = 1;
-      }
-    }
-    json& all = results[name] = json::array();
-    for (std::size_t l = 0; l < skipped; ++l) {
-      all.push_back(nullptr);
-    }
-    for (json& load : loads) {
-      all.push_back(std::move(load));
-    }
-  };
-  const double body = surface.body, layer = surface.radius, c1 = surface.c1, c3 = surface.c3;
-  const auto wanted = [&](const char* name) {
-    return settings.models.empty() || std::ranges::find(settings.models, name) != settings.models.end();
-  };
-  const auto run_wanted = [&](const char* name, double plate, double first, double third, const char* law) {
-    if (wanted(name)) {
-      run(name, body, plate, first, third, law);
-    }
-  };
-  run_wanted("linear", layer, 0.0, 0.0, "");
-  run_wanted("linear_springs", surface.springs.radius, surface.springs.c1, surface.springs.c3, "");
-  run_wanted("linear_layer", layer, c1, c3, "");
-  run_wanted("finite", layer, 0.0, 0.0, "foam");
-  run_wanted("finite_layer", layer, c1, c3, "foam");
-  run_wanted("neo_layer", layer, c1, c3, "neo-hookean");
+  }
   return results;
 }
 

@@ -1,53 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibration/compare/continuum_program.h"
 
-#include <cerrno>
-#include <cstring>
-#include <fcntl.h>
+#include "base/program.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
-#include <spawn.h>
 #include <sstream>
 #include <stdexcept>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace boba::calibration {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path program() {
-  fs::path path = fs::read_symlink("/proc/self/exe").parent_path() / "boba-continuum";
-  if (!fs::exists(path)) {
-    throw std::runtime_error(
-        fmt::format("{}: there is no such program; build the target boba-continuum", path.string()));
-  }
-  return path;
-}
-
-/// Exit code; both streams go to `log`.
-int run(std::vector<std::string> words, const fs::path& log) {
-  std::vector<char*> argv;
-  for (std::string& word : words) {
-    argv.push_back(word.data());
-  }
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  posix_spawn_file_actions_adddup2(&actions, 1, 2);
-  pid_t child = 0;
-  int status = 0;
-  const int failed = posix_spawn(&child, argv[0], &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0 || waitpid(child, &status, 0) != child) {
-    throw std::runtime_error(fmt::format("{}: cannot be started: {}", words[0], std::strerror(failed)));
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
 
 std::string text_of(const fs::path& file) {
   std::stringstream text;
@@ -56,8 +22,7 @@ std::string text_of(const fs::path& file) {
 }
 
 std::vector<std::string> command_line(const std::string& problem, const ContinuumModel& model, const fs::path& folder) {
-  std::vector<std::string> words = {program().string(),
-                                    problem,
+  std::vector<std::string> words = {problem,
                                     fmt::format("--radius={:.10g}", model.radius),
                                     fmt::format("--young={:.10g}", model.young),
                                     fmt::format("--poisson={:.10g}", model.poisson),
@@ -83,10 +48,11 @@ nlohmann::json run_continuum(const std::string& problem, const ContinuumModel& m
                              std::vector<double> loads, const fs::path& folder) {
   const fs::path own = folder / (problem + "_" + model.name), log = folder / (problem + "_" + model.name + ".log");
   fs::create_directories(own);
+  const fs::path program = program_beside("boba-continuum");
   while (!loads.empty()) {
     std::vector<std::string> words = command_line(problem, model, own);
     words.push_back(fmt::format("--{}={:.10g}", load_option, fmt::join(loads, ",")));
-    const int code = run(words, log);
+    const int code = run_process(program, words, log);
     if (code == 0) {
       return nlohmann::json::parse(text_of(own / "summary.json")).at("loads");
     }

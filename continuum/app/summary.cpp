@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "continuum/app/summary.h"
 
-#include "continuum/app/hdf5_file.h"
+#include "base/hdf5/hdf5_file.h"
 
 #include <fmt/format.h>
 #include <fstream>
@@ -43,12 +43,19 @@ void write_csv(const std::filesystem::path& file, const json& loads) {
   }
 }
 
+void write_array(const hdf5::File& file, const std::string& name, const std::vector<double>& values,
+                 const std::string& unit) {
+  file.write(name, std::span<const double>(values));
+  file.set_attribute(name, "boba_unit", unit);
+}
+
 void write_hdf5(const std::filesystem::path& path, const json& document) {
-  Hdf5File file(path);
-  file.attribute("/", "schema", document.at("schema").get<std::string>());
-  file.attribute("/", "schema_version", fmt::format("{}", document.at("schema_version").get<int>()));
-  file.attribute("/", "problem", document.at("problem").get<std::string>());
-  file.attribute("/", "parameters", document.at("parameters").dump());
+  hdf5::File file = hdf5::File::create(path);
+  file.set_attribute("/", "schema", document.at("schema").get<std::string>());
+  file.set_attribute("/", "schema_version", fmt::format("{}", document.at("schema_version").get<int>()));
+  file.set_attribute("/", "problem", document.at("problem").get<std::string>());
+  file.set_attribute("/", "parameters", document.at("parameters").dump());
+  file.make_group("/loads");
   const json& loads = document.at("loads");
   for (const auto& [name, value] : loads.at(0).items()) {
     if (value.is_number()) {
@@ -56,19 +63,21 @@ void write_hdf5(const std::filesystem::path& path, const json& document) {
       for (const auto& load : loads) {
         column.push_back(load.at(name).get<double>());
       }
-      file.array(fmt::format("/loads/{}", name), column, unit_of(name));
+      write_array(file, fmt::format("/loads/{}", name), column, unit_of(name));
     }
   }
   for (std::size_t i = 0; i < loads.size(); ++i) {
     for (const auto& [group, value] : loads[i].items()) {
       if (value.is_object()) {
+        const std::string folder = fmt::format("/load_{:04d}/{}", i, group);
+        file.make_group(folder);
         for (const auto& [name, numbers] : value.items()) {
-          file.array(fmt::format("/load_{:04d}/{}/{}", i, group, name), numbers.get<std::vector<double>>(),
-                     unit_of(name));
+          write_array(file, folder + "/" + name, numbers.get<std::vector<double>>(), unit_of(name));
         }
       }
     }
   }
+  file.close();
 }
 
 } // namespace

@@ -4,7 +4,7 @@
 #include "calibration/network/network_stiffness.h"
 #include "calibration/specimen/nonlinear_network.h"
 #include "tests/calibration/test_boxes.h"
-#include "tests/unit/laws/other_laws.h"
+#include "tests/support/other_laws.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

@@ -5,34 +5,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <gtest/gtest.h>
-#include <map>
 
 namespace boba::test {
 namespace {
-
-// What makes a curve a Hilbert curve: it visits every cell once, and consecutive cells share a face.
-TEST(HilbertCurve, VisitsEveryCellStepByStep) {
-  constexpr int n = 8; // cells a side of a coarse cube, the first of which the fine curve fills before it goes on
-  constexpr int fine = 1024;
-  std::map<std::uint32_t, std::array<int, 3>> cell_at;
-  for (int x = 0; x < n; ++x) {
-    for (int y = 0; y < n; ++y) {
-      for (int z = 0; z < n; ++z) {
-        const Vector3 s = (Vector3(x, y, z) + Vector3::Constant(0.5)) / fine;
-        ASSERT_TRUE(cell_at.try_emplace(hilbert_place(s), std::array{x, y, z}).second);
-      }
-    }
-  }
-  ASSERT_EQ(cell_at.begin()->first, 0U);
-  ASSERT_EQ(cell_at.rbegin()->first, static_cast<std::uint32_t>(n * n * n - 1));
-  for (auto at = cell_at.begin(), next = std::next(at); next != cell_at.end(); ++at, ++next) {
-    int distance = 0;
-    for (int c = 0; c < 3; ++c) {
-      distance += std::abs(at->second[c] - next->second[c]);
-    }
-    EXPECT_EQ(distance, 1);
-  }
-}
 
 PlacementInput cubic(const Packing& packing, int side, int n_ranks, int lanes) {
   PlacementInput input = {&packing, n_ranks, lanes, {}, {}};

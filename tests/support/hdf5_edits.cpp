@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/support/hdf5_edits.h"
 
-#include "bpm/hdf5/hdf5_file.h"
+#include "base/hdf5/hdf5_file.h"
 
 #include <algorithm>
 #include <array>

@@ -88,13 +88,94 @@ std::vector<std::string> MeasureTables::grain_order_columns() {
           "template_shear", "cluster",     "voronoi_volume_d3"};
 }
 
+namespace {
+
+/// Means over the grains of a frame, as they stand in the columns of `order`.
+class OrderRow {
+public:
+  explicit OrderRow(const FrameOrder& order) : order_(order), n_(static_cast<double>(order.bonds.size())) {}
+
+  /// \param rest how long copies of the frames rested, tau
+  std::vector<std::optional<double>> row(double rest) {
+    add_bond_order();
+    add_templates();
+    add_clusters();
+    add_long_range_order();
+    row_.emplace_back(rest);
+    return std::move(row_);
+  }
+  /// Share of grains that are fcc, hcp or bcc by the signs of w4 and w6.
+  double ordered_share() const { return share(classes_, CrystalClass::fcc, CrystalClass::hcp, CrystalClass::bcc); }
+  /// The same by template matching.
+  double template_ordered_share() const { return share(lattices_, Lattice::fcc, Lattice::hcp, Lattice::bcc); }
+
+private:
+  template <class Counts, class... Kind> double share(const Counts& counts, Kind... kind) const {
+    return (counts[static_cast<std::size_t>(kind)] + ...) / n_;
+  }
+  template <class Value> double mean(const Value& value) const {
+    double sum = 0.0;
+    for (std::size_t g = 0; g < order_.bonds.size(); ++g) {
+      sum += static_cast<double>(value(g));
+    }
+    return sum / n_;
+  }
+  void add_bond_order() {
+    for (const CrystalClass crystal :
+         {CrystalClass::fcc, CrystalClass::hcp, CrystalClass::bcc, CrystalClass::disordered}) {
+      row_.emplace_back(share(classes_, crystal));
+    }
+    row_.emplace_back(mean([&](std::size_t g) { return order_.bonds[g].q4; }));
+    row_.emplace_back(mean([&](std::size_t g) { return order_.bonds[g].q6; }));
+    row_.emplace_back(mean([&](std::size_t g) { return order_.bonds[g].averaged_q4; }));
+    row_.emplace_back(mean([&](std::size_t g) { return order_.bonds[g].averaged_q6; }));
+    row_.emplace_back(mean([&](std::size_t g) { return order_.bonds[g].n_neighbours; }));
+    row_.emplace_back(share(classes_, CrystalClass::unknown));
+  }
+  void add_templates() {
+    for (const Lattice lattice :
+         {Lattice::fcc, Lattice::hcp, Lattice::bcc, Lattice::sc, Lattice::icosahedral, Lattice::unknown}) {
+      row_.emplace_back(share(lattices_, lattice));
+    }
+    row_.emplace_back(mean([&](std::size_t g) { return order_.matches[g].rmsd; }));
+    row_.emplace_back(mean([&](std::size_t g) { return order_.matches[g].shear; }));
+  }
+  void add_clusters() {
+    row_.emplace_back(mean([&](std::size_t g) { return order_.cluster_of[g] > 0; }));
+    const Cluster largest = order_.clusters.empty() ? Cluster{} : order_.clusters.front();
+    row_.emplace_back(static_cast<double>(order_.clusters.size()));
+    row_.emplace_back(static_cast<double>(largest.grains.size()));
+    for (const bool percolates : largest.percolates) {
+      row_.emplace_back(percolates ? 1.0 : 0.0);
+    }
+    row_.emplace_back(static_cast<double>(largest_finite(order_.clusters)));
+  }
+  void add_long_range_order() {
+    if (order_.volumes.empty()) {
+      row_.resize(row_.size() + 3);
+      return;
+    }
+    const double volume = mean([&](std::size_t g) { return order_.volumes[g]; });
+    row_.emplace_back(order_.bragg->height);
+    row_.emplace_back(volume);
+    row_.emplace_back(std::sqrt(mean([&](std::size_t g) { return std::pow(order_.volumes[g] - volume, 2); })));
+  }
+
+  const FrameOrder& order_;
+  double n_;
+  std::array<int, n_crystal_classes> classes_ = count_classes(order_.bonds);
+  std::array<int, n_lattices> lattices_ = count_lattices(order_.matches);
+  std::vector<std::optional<double>> row_;
+};
+
+} // namespace
+
 void MeasureTables::add_order(const Frame& frame) {
   const std::vector<Vector3> rested =
       frame_rest_ ? frame_rest_->rested_centres(frame.snapshot) : std::vector<Vector3>();
   const FrameOrder order = frame_rest_ ? order_of(frame.snapshot.box, rested, neighbours_of(frame, rested), plan_)
                                        : order_of(frame.snapshot.box, frame.centres, frame.neighbours, plan_);
-  const std::size_t n = order.bonds.size();
-  for (std::size_t g = 0; g < n; ++g) {
+  for (std::size_t g = 0; g < order.bonds.size(); ++g) {
     const BondOrder& o = order.bonds[g];
     const TemplateMatch& match = order.matches[g];
     write("grain_order", frame.snapshot,
@@ -106,58 +187,10 @@ void MeasureTables::add_order(const Frame& frame) {
   for (const PairShell& shell : order.pair_shells) {
     write("pair_distribution", frame.snapshot, {shell.r, static_cast<double>(shell.n_pairs), shell.g});
   }
-
-  const auto classes = count_classes(order.bonds);
-  const auto lattices = count_lattices(order.matches);
-  const auto mean = [&](const auto& value) {
-    double sum = 0.0;
-    for (std::size_t g = 0; g < n; ++g) {
-      sum += static_cast<double>(value(g));
-    }
-    return sum / static_cast<double>(n);
-  };
-  Row row;
-  for (const CrystalClass crystal :
-       {CrystalClass::fcc, CrystalClass::hcp, CrystalClass::bcc, CrystalClass::disordered}) {
-    row.emplace_back(classes[static_cast<std::size_t>(crystal)] / static_cast<double>(n));
-  }
-  row.emplace_back(mean([&](std::size_t g) { return order.bonds[g].q4; }));
-  row.emplace_back(mean([&](std::size_t g) { return order.bonds[g].q6; }));
-  row.emplace_back(mean([&](std::size_t g) { return order.bonds[g].averaged_q4; }));
-  row.emplace_back(mean([&](std::size_t g) { return order.bonds[g].averaged_q6; }));
-  row.emplace_back(mean([&](std::size_t g) { return order.bonds[g].n_neighbours; }));
-  row.emplace_back(classes[static_cast<std::size_t>(CrystalClass::unknown)] / static_cast<double>(n));
-  for (const Lattice lattice :
-       {Lattice::fcc, Lattice::hcp, Lattice::bcc, Lattice::sc, Lattice::icosahedral, Lattice::unknown}) {
-    row.emplace_back(lattices[static_cast<std::size_t>(lattice)] / static_cast<double>(n));
-  }
-  row.emplace_back(mean([&](std::size_t g) { return order.matches[g].rmsd; }));
-  row.emplace_back(mean([&](std::size_t g) { return order.matches[g].shear; }));
-  row.emplace_back(mean([&](std::size_t g) { return order.cluster_of[g] > 0; }));
-  const Cluster largest = order.clusters.empty() ? Cluster{} : order.clusters.front();
-  row.emplace_back(static_cast<double>(order.clusters.size()));
-  row.emplace_back(static_cast<double>(largest.grains.size()));
-  for (const bool percolates : largest.percolates) {
-    row.emplace_back(percolates ? 1.0 : 0.0);
-  }
-  row.emplace_back(static_cast<double>(largest_finite(order.clusters)));
-  if (order.volumes.empty()) {
-    row.resize(row.size() + 3);
-  } else {
-    const double volume = mean([&](std::size_t g) { return order.volumes[g]; });
-    row.emplace_back(order.bragg->height);
-    row.emplace_back(volume);
-    row.emplace_back(std::sqrt(mean([&](std::size_t g) { return std::pow(order.volumes[g] - volume, 2); })));
-  }
-  row.emplace_back(frame_rest_ ? plan_.rest.value_or(0.0) : 0.0);
-  write("order", frame.snapshot, row);
-  const auto share = [&](auto first, auto second, auto third, const auto& counts) {
-    return (counts[static_cast<std::size_t>(first)] + counts[static_cast<std::size_t>(second)] +
-            counts[static_cast<std::size_t>(third)]) /
-           static_cast<double>(n);
-  };
-  note("ordered_share", frame.snapshot, share(CrystalClass::fcc, CrystalClass::hcp, CrystalClass::bcc, classes));
-  note("template_ordered_share", frame.snapshot, share(Lattice::fcc, Lattice::hcp, Lattice::bcc, lattices));
+  OrderRow means(order);
+  write("order", frame.snapshot, means.row(frame_rest_ ? plan_.rest.value_or(0.0) : 0.0));
+  note("ordered_share", frame.snapshot, means.ordered_share());
+  note("template_ordered_share", frame.snapshot, means.template_ordered_share());
 }
 
 } // namespace boba

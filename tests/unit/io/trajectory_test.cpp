@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/hdf5/hdf5_file.h"
+#include "base/hdf5/hdf5_file.h"
 #include "bpm/io/input_error.h"
 #include "bpm/io/trajectory.h"
 #include "bpm/io/trajectory_packing.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/clusters.h"
 #include "bpm/measure/long_range_order.h"
-#include "tests/unit/measure/crystals.h"
+#include "tests/support/crystals.h"
 
 #include <array>
 #include <cmath>

@@ -2,8 +2,8 @@
 #include "bpm/measure/contact_network.h"
 #include "bpm/measure/footprint.h"
 #include "bpm/measure/stress.h"
-#include "tests/unit/measure/crystals.h"
-#include "tests/unit/measure/shapes.h"
+#include "tests/support/crystals.h"
+#include "tests/support/shapes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -163,15 +163,6 @@ TEST(Stress, SummarySignsAndKineticPart) {
   EXPECT_NEAR(kinetic[1], -2.0 * 0.04 / 8.0, 1e-15);
   EXPECT_NEAR(kinetic[2], -2.0 * 0.09 / 8.0, 1e-15);
   EXPECT_NEAR(kinetic[3], -2.0 * 0.02 / 8.0, 1e-15);
-}
-
-TEST(Stress, PublishedRateHasAKnownInertialNumber) {
-  // rate 1.6e-5, D = 20, rho = 5137 / (4/3 pi 1000), P~ = 0.1 at E = 1.84, nu = 0.25: P = 0.1 * 1.84 / 1.875.
-  const double pressure = 0.1 * 1.84 / (2.0 - 2.0 * 0.0625);
-  EXPECT_NEAR(normalised_pressure(pressure, 1.84, 0.25), 0.1, 1e-15);
-  EXPECT_NEAR(inertial_number(1.6e-5, 20.0, 5137.0 / (4.0 / 3.0 * pi * 1000.0), pressure), 1.1313e-3, 1e-7);
-  EXPECT_THROW(inertial_number(1.0, 20.0, 1.0, 0.0), std::invalid_argument);
-  EXPECT_THROW(normalised_pressure(1.0, -1.0, 0.3), std::invalid_argument);
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/blocking.h"
 #include "bpm/measure/non_affine.h"
-#include "tests/unit/measure/crystals.h"
+#include "tests/support/crystals.h"
 
 #include <cmath>
 #include <gtest/gtest.h>

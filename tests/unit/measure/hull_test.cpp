@@ -2,9 +2,9 @@
 #include "bpm/measure/convex_hull.h"
 #include "bpm/measure/hull_facets.h"
 #include "bpm/measure/hull_shape.h"
+#include "tests/support/shapes.h"
 #include "tests/unit/measure/grain_file.h"
 #include "tests/unit/measure/qhull_oracle.h"
-#include "tests/unit/measure/shapes.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

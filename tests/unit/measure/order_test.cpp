@@ -2,8 +2,8 @@
 #include "bpm/measure/bond_order.h"
 #include "bpm/measure/neighbours.h"
 #include "bpm/measure/spherical_harmonics.h"
-#include "tests/unit/measure/crystals.h"
-#include "tests/unit/measure/shapes.h"
+#include "tests/support/crystals.h"
+#include "tests/support/shapes.h"
 
 #include <algorithm>
 #include <cmath>

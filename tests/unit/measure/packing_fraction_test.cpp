@@ -2,7 +2,7 @@
 #include "bpm/measure/packing_fraction.h"
 #include "bpm/measure/philox.h"
 #include "bpm/measure/point_grid.h"
-#include "tests/unit/measure/shapes.h"
+#include "tests/support/shapes.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -16,16 +16,14 @@ using namespace boba;
 using namespace boba::measure;
 using std::numbers::pi;
 
-using Words4 = std::array<std::uint32_t, 4>;
-
-TEST(Philox, KnownAnswers) {
-  // Source: the known-answer file of Random123 (philox4x32, 10 rounds).
-  EXPECT_EQ(philox4x32({0, 0, 0, 0}, {0, 0}), (Words4{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
-  constexpr std::uint32_t ones = 0xffffffff;
-  EXPECT_EQ(philox4x32({ones, ones, ones, ones}, {ones, ones}),
-            (Words4{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
-  EXPECT_EQ(philox4x32({0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}),
-            (Words4{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
+// Source of the bits: the known-answer file of Random123 (philox4x32, 10 rounds), counter and key 0:
+// 6627e8d5 e169c58d bc57ac4c 9b00dbd8; the fourth word's low 30 bits are ten more for each coordinate.
+TEST(RandomPoint, IsPhiloxOfIndexAndSeed) {
+  const auto u = random_point(0, 0);
+  EXPECT_EQ(u[0], 0x6627e8d5p-32 + 0x3d8p-42);
+  EXPECT_EQ(u[1], 0xe169c58dp-32 + 0x036p-42);
+  EXPECT_EQ(u[2], 0xbc57ac4cp-32 + 0x1b0p-42);
+  EXPECT_NE(random_point(1, 0), random_point(0, 1));
 }
 
 TEST(PointGrid, FindsEveryImageOnce) {

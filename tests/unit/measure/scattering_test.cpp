@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/philox.h"
 #include "bpm/measure/scattering.h"
-#include "tests/unit/measure/shapes.h"
+#include "tests/support/shapes.h"
 
 #include <algorithm>
 #include <cmath>

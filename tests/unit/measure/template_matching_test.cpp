@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/bond_order.h"
 #include "bpm/measure/template_matching.h"
-#include "tests/unit/measure/crystals.h"
-#include "tests/unit/measure/shapes.h"
+#include "tests/support/crystals.h"
+#include "tests/support/shapes.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -2,7 +2,7 @@
 // A scene chooses a contact law by name; laws from outside the tree bring keys of their own.
 #include "bpm/forces/outside_contact_law.h"
 #include "bpm/scene/scene.h"
-#include "tests/unit/laws/other_laws.h"
+#include "tests/support/other_laws.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/io/input_error.h"
-#include "bpm/scene/toml_node.h"
+#include "bpm/toml/toml_node.h"
 #include "tests/support/temporary_folder.h"
 
 #include <chrono>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/hdf5/hdf5_file.h"
+#include "base/hdf5/hdf5_file.h"
 
-#include "bpm/hdf5/hdf5_room.h"
+#include "base/hdf5/hdf5_allocation.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -33,10 +33,10 @@ std::string reason() {
   return text;
 }
 
-Handle access_properties(bool with_rooms) {
+Handle access_properties(bool allocates_frames) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS));
-  if (with_rooms) {
-    use_room_driver(access);
+  if (allocates_frames) {
+    use_allocation_driver(access);
   }
   // Others may read the file while the run goes on.
   H5Pset_file_locking(access, false, true);
@@ -79,14 +79,14 @@ hid_t File::check(hid_t result, const std::string& doing) const {
   if (result < 0) {
     const std::string why = reason();
     if (writable_ && id_ >= 0) {
-      let_go();
+      detach();
     }
     throw std::runtime_error(fmt::format("{}: {} failed: {}", path_.string(), doing, why));
   }
   return result;
 }
 
-void File::let_go() const {
+void File::detach() const {
   // HDF5 cannot close a file that it could not write: it crashes, at the latest when the program ends. So from here on
   // it writes into memory instead, which succeeds; the file on the disk stays as it was last flushed.
   int* descriptor = nullptr;
@@ -101,7 +101,7 @@ void File::let_go() const {
   }
 }
 
-File File::create(const std::filesystem::path& path, bool with_rooms) {
+File File::create(const std::filesystem::path& path, bool allocates_frames) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // failures are thrown, not printed
   File file;
   file.path_ = path;
@@ -109,17 +109,17 @@ File File::create(const std::filesystem::path& path, bool with_rooms) {
   const Handle creation(H5Pcreate(H5P_FILE_CREATE));
   // Wide nodes in the index of chunks: it is split, which touches several places, only once in 1024 frames.
   H5Pset_istore_k(creation, 512);
-  const Handle access = access_properties(with_rooms);
+  const Handle access = access_properties(allocates_frames);
   file.id_ = Handle(file.check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), "creating the file"));
   return file;
 }
 
-File File::open(const std::filesystem::path& path, bool writable, bool with_rooms) {
+File File::open(const std::filesystem::path& path, bool writable, bool allocates_frames) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // failures are thrown, not printed
   File file;
   file.path_ = path;
   file.writable_ = writable;
-  const Handle access = access_properties(with_rooms);
+  const Handle access = access_properties(allocates_frames);
   file.id_ = Handle(
       file.check(H5Fopen(path.c_str(), writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access), "opening the HDF5 file"));
   return file;
@@ -372,7 +372,7 @@ void File::reserve(std::uint64_t n_bytes) const {
     code = fallocate(descriptor, 0, 0, static_cast<off_t>(length + n_bytes)) == 0 ? 0 : errno;
   }
   if (code != 0 && code != EOPNOTSUPP && code != ENOSYS) {
-    let_go(); // what HDF5 still holds may not fit either
+    detach(); // what HDF5 still holds may not fit either
     throw std::runtime_error(
         fmt::format("{}: no room for {} more bytes: {}", path_.string(), n_bytes, std::strerror(code)));
   }
@@ -398,7 +398,7 @@ void File::close() {
   check(ftruncate(descriptor, static_cast<off_t>(length)), "giving back reserved space");
   // Closing writes the superblock once more, to say that nobody has the file open for writing; nobody reads that in a
   // superblock of this version, and were the write to fail it would go unseen, or HDF5 crash. All else is on the disk.
-  let_go();
+  detach();
   id_ = Handle();
 }
 

@@ -9,7 +9,7 @@
 #include "bpm/grain/random.h"
 #include "bpm/measure/contact_network.h"
 #include "tests/support/small_packings.h"
-#include "tests/unit/laws/other_laws.h"
+#include "tests/support/other_laws.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

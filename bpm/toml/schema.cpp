@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/scene/schema.h"
+#include "bpm/toml/schema.h"
 
 #include <algorithm>
 #include <cmath>

@@ -53,9 +53,9 @@ template <> inline hid_t type_of<std::int32_t>() {
 class File {
 public:
   File() = default;
-  /// Replaces what is there. `with_rooms`: make_room will be called.
-  static File create(const std::filesystem::path& path, bool with_rooms = false);
-  static File open(const std::filesystem::path& path, bool writable, bool with_rooms = false);
+  /// Replaces a file of this name. \param allocates_frames whether allocate_frame will be called
+  static File create(const std::filesystem::path& path, bool allocates_frames = false);
+  static File open(const std::filesystem::path& path, bool writable, bool allocates_frames = false);
 
   void make_group(const std::string& name) const;
   /// \throws std::runtime_error when the name leads through a link to somewhere else.
@@ -122,11 +122,11 @@ public:
   }
   /// The frame as if it had been written, but its values are left to others: returns where in the file they belong,
   /// bytes from its begin. Of a dataset of T with one frame a chunk and no compression.
-  template <typename T> std::uint64_t make_room(const std::string& name, hsize_t frame) const {
-    return make_room_raw(name, frame, type_of<T>());
+  template <typename T> std::uint64_t allocate_frame(const std::string& name, hsize_t frame) const {
+    return allocate_frame_raw(name, frame, type_of<T>());
   }
   int compression(const std::string& name) const;
-  /// Is a frame one chunk, as it is stored? Only then make_room has a place for all of it.
+  /// Is a frame one chunk, as it is stored? Only then allocate_frame has a place for all of it.
   bool has_whole_frames(const std::string& name) const;
   void set_frames(const std::string& name, hsize_t n_frames) const;
   /// A second name for the same dataset.
@@ -140,7 +140,7 @@ public:
   void flush() const;
   void close();
   /// Takes the file away from HDF5: what is written from now on is lost, and the file stays as it was last flushed.
-  void let_go() const;
+  void detach() const;
   bool is_open() const { return id_ >= 0; }
   const std::filesystem::path& path() const { return path_; }
 
@@ -159,7 +159,7 @@ private:
   std::uint64_t file_length() const;
   void make_growing_raw(const std::string& name, const Growing& layout, hid_t type, const void* fill) const;
   void write_frame_raw(const std::string& name, hsize_t frame, const void* values, hid_t type, hsize_t n) const;
-  std::uint64_t make_room_raw(const std::string& name, hsize_t frame, hid_t type) const;
+  std::uint64_t allocate_frame_raw(const std::string& name, hsize_t frame, hid_t type) const;
   void read_frame_raw(const std::string& name, hsize_t frame, void* values, hid_t type) const;
   void put_attribute(const std::string& object, const std::string& name, hid_t type, hid_t space,
                      const void* values) const;

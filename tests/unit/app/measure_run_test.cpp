@@ -2,8 +2,8 @@
 // From a stored trajectory to tables: a crystal whose numbers are known.
 #include "bpm/app/measure/measure_run.h"
 #include "bpm/io/trajectory.h"
-#include "tests/unit/measure/crystals.h"
-#include "tests/unit/measure/shapes.h"
+#include "tests/support/crystals.h"
+#include "tests/support/shapes.h"
 
 #include <cmath>
 #include <fstream>

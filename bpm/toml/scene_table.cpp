@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/scene/scene_table.h"
+#include "bpm/toml/scene_table.h"
 
 #include "bpm/io/input_error.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/scene/schema.h"
-#include "bpm/scene/toml_node.h"
+#include "bpm/toml/schema.h"
+#include "bpm/toml/toml_node.h"
 
 #include <map>
 #include <optional>

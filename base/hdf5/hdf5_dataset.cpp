@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a file says of its datasets, checked before memory is taken for their values: it may come from anywhere.
-#include "bpm/hdf5/hdf5_file.h"
+#include "base/hdf5/hdf5_file.h"
 
 #include <algorithm>
 #include <fmt/format.h>

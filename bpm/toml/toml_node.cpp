@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/scene/toml_node.h"
+#include "bpm/toml/toml_node.h"
 
 #include "bpm/io/input_error.h"
 

@@ -2,7 +2,7 @@
 #include "bpm/app/measure/frame_rest.h"
 #include "bpm/grain/build_template.h"
 #include "bpm/measure/template_matching.h"
-#include "tests/unit/measure/crystals.h"
+#include "tests/support/crystals.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>

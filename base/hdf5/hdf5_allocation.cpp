@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rooms: chunks that HDF5 gives a place and an entry in its index, while their values come from elsewhere.
-#include "bpm/hdf5/hdf5_room.h"
+// Frames whose chunk gets a place in the file and an entry in the index, while others write their values.
+#include "base/hdf5/hdf5_allocation.h"
 
-#include "bpm/hdf5/hdf5_file.h"
+#include "base/hdf5/hdf5_file.h"
 
 #include <cstdlib>
 #include <fmt/format.h>
@@ -15,15 +15,16 @@ namespace {
 
 /// HDF5's own driver of POSIX files.
 const H5FD_class_t* posix = nullptr;
-bool is_making_room = false;
+bool is_allocating = false;
 
 /// HDF5 has no call that gives a chunk its place and writes nothing. So it writes one, and values are dropped here.
-herr_t write_unless_room(H5FD_t* file, H5FD_mem_t type, hid_t transfer, haddr_t at, std::size_t n, const void* bytes) {
-  return is_making_room && type == H5FD_MEM_DRAW ? 0 : posix->write(file, type, transfer, at, n, bytes);
+herr_t write_unless_allocating(H5FD_t* file, H5FD_mem_t type, hid_t transfer, haddr_t at, std::size_t n,
+                               const void* bytes) {
+  return is_allocating && type == H5FD_MEM_DRAW ? 0 : posix->write(file, type, transfer, at, n, bytes);
 }
 
 /// The POSIX driver with another way to write.
-hid_t room_driver() {
+hid_t allocation_driver() {
   static H5FD_class_t driver;
   static const hid_t id = [] {
     const Handle access(H5Pcreate(H5P_FILE_ACCESS));
@@ -34,28 +35,28 @@ hid_t room_driver() {
     }
     posix = any->cls;
     driver = *posix;
-    driver.name = "boba rooms";
-    driver.write = write_unless_room;
+    driver.name = "boba allocation";
+    driver.write = write_unless_allocating;
     H5FDclose(any);
     return H5FDregister(&driver);
   }();
   return id;
 }
 
-struct MakingRoom {
-  MakingRoom() { is_making_room = true; }
-  ~MakingRoom() { is_making_room = false; }
+struct AllocatingOnly {
+  AllocatingOnly() { is_allocating = true; }
+  ~AllocatingOnly() { is_allocating = false; }
 };
 
 } // namespace
 
-void use_room_driver(hid_t access) {
-  if (H5Pset_driver(access, room_driver(), nullptr) < 0) {
+void use_allocation_driver(hid_t access) {
+  if (H5Pset_driver(access, allocation_driver(), nullptr) < 0) {
     throw std::runtime_error("HDF5 does not take a driver for files that several ranks write");
   }
 }
 
-std::uint64_t File::make_room_raw(const std::string& name, hsize_t frame, hid_t type) const {
+std::uint64_t File::allocate_frame_raw(const std::string& name, hsize_t frame, hid_t type) const {
   std::vector<hsize_t> extent = shape(name);
   set_frames(name, frame + 1);
   Handle dataset(check(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), "opening " + name));
@@ -76,15 +77,15 @@ std::uint64_t File::make_room_raw(const std::string& name, hsize_t frame, hid_t 
   std::vector<hsize_t> at(extent.size(), 0);
   at[0] = frame;
   {
-    const MakingRoom now;
-    check(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, at.data(), n_bytes, nothing.get()), "making room in " + name);
+    const AllocatingOnly now;
+    check(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, at.data(), n_bytes, nothing.get()), "allocating a frame of " + name);
   }
   unsigned filters = 0;
   haddr_t place = HADDR_UNDEF;
   hsize_t size = 0;
   check(H5Dget_chunk_info_by_coord(dataset, at.data(), &filters, &place, &size), "asking for the place of " + name);
   if (place == HADDR_UNDEF || size != n_bytes) {
-    throw std::runtime_error(fmt::format("{}: HDF5 has made no room in {}", path_.string(), name));
+    throw std::runtime_error(fmt::format("{}: HDF5 has allocated no frame of {}", path_.string(), name));
   }
   close_dataset(dataset, name);
   return place;
