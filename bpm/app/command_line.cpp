@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/command_line.h"
 
+#include "base/program.h"
 #include "bpm/app/command.h"
 #include "bpm/app/on_ranks.h"
 #include "bpm/app/standard_streams.h"
