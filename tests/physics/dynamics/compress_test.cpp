@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a compression comes to rest at its pressure.
-#include "bpm/stages/compress.h"
-
 #include "bpm/dynamics/simulation.h"
+#include "bpm/stages/compress.h"
 #include "tests/support/small_packings.h"
 
 #include <algorithm>

@@ -8,8 +8,8 @@
 #include "bpm/grain/build_template.h"
 #include "bpm/grain/random.h"
 #include "bpm/measure/contact_network.h"
-#include "tests/support/small_packings.h"
 #include "tests/support/other_laws.h"
+#include "tests/support/small_packings.h"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

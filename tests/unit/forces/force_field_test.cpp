@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The lane kernels and the contact search against plain loops over all pairs in long double.
 #include "bpm/forces/force_field.h"
-
 #include "tests/support/plain_forces.h"
 #include "tests/support/small_packings.h"
 

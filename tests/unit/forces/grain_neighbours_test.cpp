@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Neighbouring grains against a loop over all grains and a fixed block of images; the gap between two grains against
 // the distances of all their places.
-#include "bpm/forces/grain_neighbours.h"
-
 #include "bpm/forces/contact_search.h"
+#include "bpm/forces/grain_neighbours.h"
 
 #include <gtest/gtest.h>
 #include <random>
