@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/program.h"
 #include "bpm/app/command.h"
-#include "bpm/app/sibling.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@ CommandBody add_module_command(CLI::App& app) {
   app.prefix_command();
   app.set_help_flag();
   return [&app]() -> ExitCode {
-    const std::filesystem::path script = program_folder().parent_path() / "share/boba/report";
+    const std::filesystem::path script = data_folder() / "report";
     if (!std::filesystem::exists(script)) {
       throw std::runtime_error(fmt::format("{}: {} is missing", app.get_name(), script.string()));
     }
