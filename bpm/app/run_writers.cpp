@@ -63,6 +63,7 @@ TrajectoryWriter trajectory_writer(const RunSetup& setup, const Simulation& simu
   TrajectoryOptions options;
   options.velocity = output.velocities;
   options.nodes_by_others = nodes_by_others;
+  options.damage = bonds_break(simulation.packing());
   const FileMode mode = setup.restart ? FileMode::overwrite : FileMode::create;
   return {path, topology, origin, options, mode};
 }
@@ -162,7 +163,7 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
   const auto schedule = [&](const OutputInterval& every) {
     return Schedule(every, path_of_strain(setup, simulation), simulation.time());
   };
-  const std::vector<std::string> columns = run_table_columns();
+  const std::vector<std::string> columns = run_table_columns(bonds_break(simulation.packing()));
   const bool writes = simulation.ranks().is_root();
   std::optional<TableWriter> table;
   if (writes) {

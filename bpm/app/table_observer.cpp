@@ -4,34 +4,37 @@
 #include "bpm/dynamics/simulation.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
 namespace boba {
 
-std::vector<std::string> run_table_columns() {
-  return {"step",
-          "time_tau",
-          "stage",
-          "strain",
-          "phi_reference",
-          "P_k/d",
-          "P_normalised",
-          "mu",
-          "inertial_number",
-          "kinetic_energy_kd2",
-          "elastic_energy_kd2",
-          "largest_overlap_d",
-          "Lx_d",
-          "Ly_d",
-          "Lz_d",
-          "xy_d",
-          "xz_d",
-          "yz_d",
-          "end_gap_d",
-          "end_force_kd",
-          "speed_steps/s"};
+std::vector<std::string> run_table_columns(bool bonds_break) {
+  std::vector<std::string> columns = {"step",
+                                      "time_tau",
+                                      "stage",
+                                      "strain",
+                                      "phi_reference",
+                                      "P_k/d",
+                                      "P_normalised",
+                                      "mu",
+                                      "inertial_number",
+                                      "kinetic_energy_kd2",
+                                      "elastic_energy_kd2",
+                                      "largest_overlap_d",
+                                      "Lx_d",
+                                      "Ly_d",
+                                      "Lz_d",
+                                      "xy_d",
+                                      "xz_d",
+                                      "yz_d",
+                                      "end_gap_d",
+                                      "end_force_kd",
+                                      "speed_steps/s"};
+  if (bonds_break) {
+    columns.insert(columns.end() - 1, "broken_bonds");
+  }
+  return columns;
 }
 
 bool TableObserver::wants(const StepForecast& forecast) {
@@ -61,27 +64,29 @@ void TableObserver::observe(const Simulation& simulation, const StageProgress& p
   const auto [lower, upper] = simulation.end_forces();
   const bool has_ends = simulation.end_gap() != 0.0;
   const auto known = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
-  const std::array<std::optional<double>, 20> values = {
-      simulation.time(),
-      static_cast<double>(progress.stage),
-      simulation.strain(),
-      numbers_.phi_reference(box),
-      totals.pressure,
-      known(numbers_.normalised(totals.pressure)),
-      known(totals.mu()),
-      known(numbers_.inertial_number(progress.shear_rate, totals.pressure)),
-      totals.kinetic_energy,
-      totals.elastic_energy,
-      totals.largest_overlap,
-      box.lengths()[0],
-      box.lengths()[1],
-      box.lengths()[2],
-      box.xy(),
-      box.xz(),
-      box.yz(),
-      has_ends ? std::optional(simulation.end_gap()) : std::nullopt,
-      has_ends ? std::optional(0.5 * (lower + upper)) : std::nullopt,
-      steps_per_second(simulation.step())};
+  std::vector<std::optional<double>> values = {simulation.time(),
+                                               static_cast<double>(progress.stage),
+                                               simulation.strain(),
+                                               numbers_.phi_reference(box),
+                                               totals.pressure,
+                                               known(numbers_.normalised(totals.pressure)),
+                                               known(totals.mu()),
+                                               known(numbers_.inertial_number(progress.shear_rate, totals.pressure)),
+                                               totals.kinetic_energy,
+                                               totals.elastic_energy,
+                                               totals.largest_overlap,
+                                               box.lengths()[0],
+                                               box.lengths()[1],
+                                               box.lengths()[2],
+                                               box.xy(),
+                                               box.xz(),
+                                               box.yz(),
+                                               has_ends ? std::optional(simulation.end_gap()) : std::nullopt,
+                                               has_ends ? std::optional(0.5 * (lower + upper)) : std::nullopt};
+  if (totals.n_broken_bonds) {
+    values.push_back(static_cast<double>(*totals.n_broken_bonds));
+  }
+  values.push_back(steps_per_second(simulation.step()));
   writer_->write(simulation.step(), values);
 }
 

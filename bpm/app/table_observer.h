@@ -14,8 +14,9 @@
 
 namespace boba {
 
-/// Columns of table.csv, in order; each name carries its unit. Source: docs/formats.md, "Table".
-std::vector<std::string> run_table_columns();
+/// Columns of table.csv, in order; each name carries its unit. \param bonds_break how many are broken is one of them
+/// Source: docs/formats.md, "Table".
+std::vector<std::string> run_table_columns(bool bonds_break);
 
 /// Writes a row of table.csv at the ends of stages and whenever the schedule says so, each step once.
 class TableObserver : public Observer {

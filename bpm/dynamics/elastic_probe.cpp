@@ -34,7 +34,7 @@ double virial_pressure_when_scaled(MovingPacking& moving, const std::vector<Vect
   scaled_box.set_h(factor * box.h());
   moving.forces.contact_list().invalidate();
   moving.forces.evaluate(moving.state, scaled_box,
-                         {.virial = Virial::trace, .residual_rate = moving.cell.residual_rate()});
+                         {.virial = Virial::trace, .is_trial = true, .residual_rate = moving.cell.residual_rate()});
   moving.forces.share_sums(Virial::trace);
   double virial = 0.0;
   for (const GrainSums& grain : moving.forces.grain_sums()) {

@@ -6,6 +6,7 @@
 #include "bpm/parallel/star_forest.h"
 
 #include <algorithm>
+#include <cstring>
 #include <memory>
 
 namespace boba {
@@ -40,12 +41,14 @@ PlacementInput placement_input(const MovingPacking& moving, double worked) {
   return input;
 }
 
-/// The nodes of the grains that `now` gives to this rank, grain by grain, from their owners before.
-std::vector<std::byte> fetch_nodes(const MovingPacking& moving, const Ownership& before, const Ownership& now) {
-  const std::size_t size = moving.state.node_bytes();
+/// Rows of `size` bytes, one for each node of the grains that `now` gives to this rank, grain by grain, from their
+/// owners before, where pack(grain, to) writes them.
+template <class Pack>
+std::vector<std::byte> fetch_rows(const MovingPacking& moving, std::size_t size, const Ownership& before,
+                                  const Ownership& now, Pack&& pack) {
   std::vector<std::byte> old_nodes(size * before.n_nodes_of(moving.ranks().rank()));
   for (const int g : moving.layout.grains()) {
-    moving.state.pack(g, old_nodes.data() + size * before.first_node(g));
+    pack(g, old_nodes.data() + size * before.first_node(g));
   }
   const std::vector<int> n_nodes = moving.packing.nodes_of_grains();
   std::vector<RootPlace> roots;
@@ -84,7 +87,17 @@ void move_grains(MovingPacking& moving, std::vector<int> owner) {
   share_grains(moving, origins);
   const int rank = moving.ranks().rank();
   Ownership now(std::move(owner), moving.ranks().size(), moving.packing.nodes_of_grains());
-  const std::vector<std::byte> nodes = fetch_nodes(moving, moving.distribution.ownership, now);
+  const Ownership& before = moving.distribution.ownership;
+  const std::vector<std::byte> nodes = fetch_rows(moving, moving.state.node_bytes(), before, now,
+                                                  [&](int g, std::byte* to) { moving.state.pack(g, to); });
+  const std::size_t memory_bytes = sizeof(double) * static_cast<std::size_t>(moving.layout.memory_slots());
+  std::vector<std::byte> memory;
+  if (memory_bytes > 0) {
+    memory = fetch_rows(moving, memory_bytes, before, now, [&](int g, std::byte* to) {
+      const std::vector<double> rows = moving.state.memory_rows(g);
+      std::memcpy(to, rows.data(), rows.size() * sizeof(double));
+    });
+  }
   for (const int g : now.grains_of(rank)) {
     moving.migrated_grains += moving.distribution.ownership.owner(g) != rank ? 1 : 0;
   }
@@ -97,6 +110,15 @@ void move_grains(MovingPacking& moving, std::vector<int> owner) {
   for (const int g : moving.layout.grains()) {
     moving.state.unpack(g, from);
     from += moving.state.node_bytes() * moving.layout.n_nodes(g);
+  }
+  std::size_t row = 0;
+  for (const int g : moving.layout.grains()) {
+    if (memory_bytes > 0) {
+      std::vector<double> rows(memory_bytes / sizeof(double) * moving.layout.n_nodes(g));
+      std::memcpy(rows.data(), memory.data() + memory_bytes * row, rows.size() * sizeof(double));
+      moving.state.set_memory_rows(g, rows.data());
+      row += moving.layout.n_nodes(g);
+    }
   }
   moving.forces.layout_changed();
   moving.forces.set_results(results);

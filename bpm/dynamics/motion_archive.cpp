@@ -86,6 +86,36 @@ void restore_nodes(const Archive& archive, MovingPacking& moving) {
   }
 }
 
+/// What bonds remember: nothing where they remember nothing.
+void save_memory(Archive& archive, const MovingPacking& moving) {
+  const int n_slots = moving.layout.memory_slots();
+  if (n_slots == 0) {
+    return;
+  }
+  std::vector<double> rows;
+  for (const int g : moving.layout.grains()) {
+    const std::vector<double> of_grain = moving.state.memory_rows(g);
+    rows.insert(rows.end(), of_grain.begin(), of_grain.end());
+  }
+  gather_rows(moving, n_slots, rows);
+  if (moving.ranks().is_root()) {
+    archive.save("bond_memory", {std::move(rows), {moving.packing.first_nodes().back(), n_slots}});
+  }
+}
+
+void restore_memory(const Archive& archive, MovingPacking& moving) {
+  const std::int64_t n_slots = moving.layout.memory_slots();
+  if (n_slots == 0) {
+    return;
+  }
+  const std::vector<std::int64_t> first = moving.packing.first_nodes();
+  const std::vector<double>& rows = archive.real_values("bond_memory", {first.back(), n_slots});
+  for (const int g : moving.layout.grains()) {
+    moving.state.set_memory_rows(g, rows.data() + n_slots * first[g]);
+  }
+  moving.forces.bonds_changed();
+}
+
 void archive_cell(Archive& archive, MovingCell& cell) {
   MovingCell::Saved saved = cell.saved();
   archive.field("h", saved.h);
@@ -128,9 +158,11 @@ void archive_ends(Archive& archive, MovingPacking& moving) {
 void archive_motion(Archive& archive, MovingPacking& moving) {
   if (archive.is_reading()) {
     restore_nodes(archive, moving);
+    restore_memory(archive, moving);
     moving.forces.contact_list().invalidate();
   } else {
     save_nodes(archive, moving);
+    save_memory(archive, moving);
   }
   archive.inside("cell", [&] { archive_cell(archive, moving.cell); });
   archive.inside("ends", [&] { archive_ends(archive, moving); });

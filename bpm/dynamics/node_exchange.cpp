@@ -56,6 +56,15 @@ void gather_nodes(const MovingPacking& moving, std::vector<Vector3>& values) {
   }
 }
 
+void gather_rows(const MovingPacking& moving, int width, std::vector<double>& rows) {
+  if (moving.ranks().is_distributed()) {
+    const std::int64_t n_nodes = moving.ranks().is_root() ? moving.packing.first_nodes().back() : 0;
+    std::vector<double> all(static_cast<std::size_t>(width * n_nodes));
+    forest_from_root(moving)->collect(static_cast<std::size_t>(width) * sizeof(double), rows.data(), all.data());
+    rows.swap(all);
+  }
+}
+
 void share_grains(const MovingPacking& moving, std::vector<Vector3>& values) {
   moving.ranks().share_rows({values.data()->data(), 3 * values.size()}, 3, moving.distribution.ownership);
 }

@@ -19,6 +19,9 @@ void scatter_nodes(MovingPacking& moving, const std::vector<std::byte>& all);
 /// Values of this rank's nodes become those of all nodes, on rank 0. Collective.
 void gather_nodes(const MovingPacking& moving, std::vector<Vector3>& values);
 
+/// Rows of `width` numbers, one for each of this rank's nodes, become those of all nodes, on rank 0. Collective.
+void gather_rows(const MovingPacking& moving, int width, std::vector<double>& rows);
+
 /// A value for each grain, known to its owner, for all ranks. Collective.
 void share_grains(const MovingPacking& moving, std::vector<Vector3>& values);
 

@@ -48,6 +48,7 @@ void Totals::archive(Archive& archive) {
   archive.field("kinetic_energy", kinetic_energy);
   archive.field("elastic_energy", elastic_energy);
   archive.field("largest_overlap", largest_overlap);
+  archive.field("n_broken_bonds", n_broken_bonds);
 }
 
 struct Simulation::Impl {

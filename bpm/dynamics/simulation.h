@@ -14,6 +14,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -41,6 +42,7 @@ struct Totals {
   double elastic_energy = 0.0;    ///< k d^2, pairwise part of bonds and contacts (the many-body term has no energy)
   double largest_overlap = 0.0;   ///< d, over all contacts
   double least_pressure = 1e-12;  ///< k/d; a pressure below it cannot be told from rounding
+  std::optional<std::int64_t> n_broken_bonds; ///< absent where bonds do not break
   /// Shear stress over pressure; not a number where the pressure cannot be told from rounding.
   double mu() const {
     return std::abs(pressure) > least_pressure ? stress[3] / pressure : std::numeric_limits<double>::quiet_NaN();

@@ -26,6 +26,9 @@ Totals totals_of(const MovingPacking& moving) {
   const ContactTotals contacts = moving.forces.contact_totals();
   totals.elastic_energy = moving.bond_energy() + contacts.energy;
   totals.largest_overlap = contacts.largest_overlap;
+  if (moving.forces.bonds_break()) {
+    totals.n_broken_bonds = moving.forces.n_broken_bonds(moving.state);
+  }
   return totals;
 }
 
@@ -64,6 +67,14 @@ void gather_parts(const MovingPacking& moving, Simulation::Parts parts, Snapshot
   }
 }
 
+void add_damage(const MovingPacking& moving, Snapshot& snapshot) {
+  for (const int g : moving.layout.grains()) {
+    const std::vector<double> of_grain = moving.forces.damage(moving.state, g);
+    snapshot.damage.insert(snapshot.damage.end(), of_grain.begin(), of_grain.end());
+  }
+  gather_rows(moving, 1, snapshot.damage);
+}
+
 void add_grain_stress(const MovingPacking& moving, Snapshot& snapshot) {
   for (const GrainSums& sums : moving.forces.grain_sums()) {
     std::array<double, 6> stress;
@@ -92,6 +103,9 @@ Snapshot take_snapshot(const MovingPacking& moving, Simulation::Parts parts) {
     snapshot.grains = moving.layout.grains();
   } else {
     gather_parts(moving, parts, snapshot);
+  }
+  if (moving.forces.bonds_break()) {
+    add_damage(moving, snapshot);
   }
   share_grains(moving, snapshot.grain_centre);
   add_grain_stress(moving, snapshot);

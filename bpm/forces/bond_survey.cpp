@@ -9,19 +9,30 @@ namespace boba {
 
 namespace {
 
-/// Calls visit(first node, length, undeformed length) for every bond of a grain, those across the boundary included.
+struct SurveyedBond {
+  int node;            ///< the first
+  double r, r0;        ///< d
+  double memory = 1.0; ///< what it remembers; never negative where bonds do not break
+};
+
+/// Calls visit(bond) for every whole bond of a grain, those across the boundary included.
 template <class Visit>
-void for_each_bond(const NetworkData& data, const LaneState& state, const Box& box, int grain, Visit&& visit) {
+void for_each_bond(const NetworkData& data, const LaneLayout& layout, const LaneState& state, const Box& box, int grain,
+                   Visit&& visit) {
   const kernels::Network network = data.view();
   for (int i = 0; i < network.n_nodes; ++i) {
     const Vector3 xi = state.position(grain, i);
     for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
-      visit(i, (xi - state.position(grain, network.bonds[b].other)).norm(), network.bonds[b].r0);
+      const double memory = layout.remembers(grain) ? state.bond_memory(grain, b) : 1.0;
+      if (BreakingBondLaw::if_whole(1.0, memory) > 0.0) {
+        visit(
+            SurveyedBond{i, (xi - state.position(grain, network.bonds[b].other)).norm(), network.bonds[b].r0, memory});
+      }
     }
   }
   for (const ImageBond& bond : data.image_bonds()) {
     const Vector3 d = state.position(grain, bond.i) - state.position(grain, bond.j);
-    visit(bond.i, (d - box.h() * bond.n.cast<double>()).norm(), bond.r0);
+    visit(SurveyedBond{bond.i, (d - box.h() * bond.n.cast<double>()).norm(), bond.r0});
   }
 }
 
@@ -32,8 +43,12 @@ double ForceField::bond_energy(const LaneState& state, const Box& box) const {
   std::vector<double> energy(layout_.n_grains(), 0.0);
 #pragma omp parallel for schedule(dynamic, 8)
   for (const int g : layout_.grains()) {
-    for_each_bond(*network_of_grain_[g], state, box, g,
-                  [&](int, double r, double r0) { energy[g] += law.energy(r, r0); });
+    const Breaking& breaking = layout_.blocks()[layout_.block_of(g)].breaking;
+    const BreakingBondLaw breaking_law{law, breaking.in_tension_only, breaking.smooth};
+    for_each_bond(*network_of_grain_[g], layout_, state, box, g, [&](const SurveyedBond& bond) {
+      energy[g] +=
+          breaking.is_possible() ? breaking_law.energy(bond.r, bond.r0, bond.memory) : law.energy(bond.r, bond.r0);
+    });
   }
   distribution_.ranks->share_rows(energy, 1, distribution_.ownership);
   double total = 0.0;
@@ -43,13 +58,67 @@ double ForceField::bond_energy(const LaneState& state, const Box& box) const {
   return total;
 }
 
+std::vector<kernels::NodePair> ForceField::broken_bonds(const LaneState& state, int grain) const {
+  const kernels::Network network = network_of_grain_[grain]->view();
+  std::vector<kernels::NodePair> broken;
+  for (int i = 0; layout_.remembers(grain) && i < network.n_nodes; ++i) {
+    for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
+      if (!(BreakingBondLaw::if_whole(1.0, state.bond_memory(grain, b)) > 0.0)) {
+        broken.push_back({i, network.bonds[b].other});
+      }
+    }
+  }
+  return broken;
+}
+
+std::vector<int> ForceField::whole_bonds(const LaneState& state, int grain) const {
+  const kernels::Network network = network_of_grain_[grain]->view();
+  std::vector<int> n_whole(network.n_nodes, 0);
+  for (int i = 0; i < network.n_nodes; ++i) {
+    for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
+      ++n_whole[i];
+      ++n_whole[network.bonds[b].other];
+    }
+  }
+  for (const ImageBond& bond : network_of_grain_[grain]->image_bonds()) {
+    ++n_whole[bond.i];
+    ++n_whole[bond.j];
+  }
+  for (const kernels::NodePair& pair : broken_bonds(state, grain)) {
+    --n_whole[pair.i];
+    --n_whole[pair.j];
+  }
+  return n_whole;
+}
+
+std::vector<double> ForceField::damage(const LaneState& state, int grain) const {
+  const std::vector<int> whole = whole_bonds(state, grain);
+  std::vector<double> damage(whole.size(), 0.0);
+  for (const kernels::NodePair& pair : broken_bonds(state, grain)) {
+    damage[pair.i] += 1.0;
+    damage[pair.j] += 1.0;
+  }
+  for (std::size_t i = 0; i < damage.size(); ++i) {
+    damage[i] /= std::max(1.0, damage[i] + whole[i]);
+  }
+  return damage;
+}
+
+std::int64_t ForceField::n_broken_bonds(const LaneState& state) const {
+  std::int64_t n = 0;
+  for (const int g : layout_.grains()) {
+    n += static_cast<std::int64_t>(broken_bonds(state, g).size());
+  }
+  return distribution_.ranks->sum(n);
+}
+
 ForceField::Stretch ForceField::largest_stretch(const LaneState& state, const Box& box) const {
   std::vector<Stretch> largest(layout_.n_grains());
 #pragma omp parallel for schedule(dynamic, 8)
   for (const int g : layout_.grains()) {
-    for_each_bond(*network_of_grain_[g], state, box, g, [&](int node, double r, double r0) {
-      if (!(r / r0 <= largest[g].ratio)) { // also true for NaN
-        largest[g] = {r / r0, g, node};
+    for_each_bond(*network_of_grain_[g], layout_, state, box, g, [&](const SurveyedBond& bond) {
+      if (!(bond.r / bond.r0 <= largest[g].ratio)) { // also true for NaN
+        largest[g] = {bond.r / bond.r0, g, bond.node};
       }
     });
   }

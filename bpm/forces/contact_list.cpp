@@ -64,7 +64,11 @@ double ContactList::kept_distance(double distance, const Matrix3& cell, double m
 bool ContactList::update(const LaneState& state, const Box& box, const Networks& network_of_grain) {
   if (built_ && kept_distance(guaranteed_, cell_since_tracking_, motion_since_update_) >= diameter_ &&
       kept_distance(followed_guaranteed_, cell_since_tracking_, motion_of_followed_) >= diameter_) {
-    return false;
+    if (!broken_changed_) {
+      return false;
+    }
+    list_broken();
+    return true;
   }
   track(state);
   double guaranteed = built_ ? neighbour_guarantee(box) : 0.0;
@@ -87,6 +91,7 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
       add_moved(pair, *network_of_grain[pair.a]);
     }
     add_followed(pair, box, *network_of_grain[pair.a]);
+    add_broken(pair);
     guaranteed = std::min(guaranteed, kept);
   }
   ++counts_.updates;
@@ -121,7 +126,40 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
   motion_of_followed_ = 0.0;
   cell_since_tracking_ = Matrix3::Identity();
   built_ = true;
+  broken_changed_ = false;
   return true;
+}
+
+/// Broken bonds of a grain are always candidates. With nodes that move fast they are always near too, since that is
+/// what followed nodes are not watched for.
+void ContactList::add_broken(ContactPair& pair) {
+  const TrackedGrain& grain = grains_[pair.a];
+  if (!pair.inside() || grain.broken.empty()) {
+    return;
+  }
+  thread_local NodePairs found;
+  found.assign(grain.broken.begin(), grain.broken.end());
+  insert_pairs(pair.candidates, found);
+  pair.changed = pair.changed || !found.empty();
+  if (!grain.followed.empty()) {
+    found.assign(grain.broken.begin(), grain.broken.end());
+    insert_pairs(pair.followed, found);
+  }
+}
+
+/// The same while all else of the list holds.
+void ContactList::list_broken() {
+  for (ContactPair& pair : pairs_) {
+    add_broken(pair);
+  }
+#pragma omp parallel for schedule(dynamic, 1)
+  for (const int g : layout_.grains()) {
+    relist(g);
+  }
+  for (ContactPair& pair : pairs_) {
+    pair.changed = false;
+  }
+  broken_changed_ = false;
 }
 
 void ContactList::note_motion(const Matrix3& cell_map, double farthest, double common) {

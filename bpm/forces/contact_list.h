@@ -57,6 +57,11 @@ public:
   bool follows(int grain, std::int32_t node) const;
   /// Tells the list of a node that moves farther than that in a step.
   void note_fast_node(int grain, std::int32_t node);
+  /// The bonds of a grain that are broken, sorted: their nodes touch like any that were never bonded. All ranks then
+  /// call note_broken.
+  void set_broken(int grain, std::vector<kernels::NodePair> broken) { grains_[grain].broken = std::move(broken); }
+  /// Some grain, of any rank, has other broken bonds than before.
+  void note_broken() { broken_changed_ = true; }
   /// The cell's vectors or the state changed in a way that note_motion was not told of.
   void invalidate() { built_ = false; }
   /// The same, and the layout holds other grains than before.
@@ -108,11 +113,12 @@ private:
     int n_moved = 0;                 ///< since all were noted
     bool all_noted = false;          ///< all were noted since the pairs were last brought up to date
     std::vector<std::int32_t> listed, near;
-    std::vector<std::int32_t> followed; ///< nodes that are followed by themselves, ascending
-    std::vector<int> updates_left;      ///< for which each of them stays so
-    std::vector<Vector3> followed_at;   ///< where they were at the last update, seen in the frame
-    std::vector<std::int32_t> fast;     ///< nodes that moved far in a step since then, as they came
-    bool too_many_fast = false;         ///< they were too many for any to be followed
+    std::vector<std::int32_t> followed;    ///< nodes that are followed by themselves, ascending
+    std::vector<int> updates_left;         ///< for which each of them stays so
+    std::vector<Vector3> followed_at;      ///< where they were at the last update, seen in the frame
+    std::vector<std::int32_t> fast;        ///< nodes that moved far in a step since then, as they came
+    bool too_many_fast = false;            ///< they were too many for any to be followed
+    std::vector<kernels::NodePair> broken; ///< bonds that are candidates, however far apart their nodes are
   };
   using Networks = std::vector<const NetworkData*>;
   using NodePairs = std::vector<kernels::NodePair>;
@@ -149,6 +155,8 @@ private:
   static void add_partners_inside(const TrackedGrain& grain, std::int32_t node, const Vector3& place, double radius,
                                   const NetworkData& network, NodePairs& pairs);
   static void remove_bonded(const ContactPair& pair, NodePairs& list, const NetworkData& network);
+  void add_broken(ContactPair& pair);
+  void list_broken();
   static void add_candidates(ContactPair& pair, NodePairs& found, const NetworkData& network);
   bool search_holds(const ContactPair& pair) const;
   double guarantee(const ContactPair& pair, const Box& box) const;
@@ -191,7 +199,7 @@ private:
   const LaneLayout& layout_;
   const kernels::KernelTable& table_;
   double diameter_, inner_diameter_, skin_, skin_between_;
-  bool built_ = false;
+  bool built_ = false, broken_changed_ = false;
   Matrix3 cell_since_tracking_ = Matrix3::Identity(), cell_since_neighbours_ = Matrix3::Identity();
   /// All pairs of nodes that are not listed were farther apart when the grains were last tracked, d; and those of
   /// followed nodes.

@@ -67,6 +67,36 @@ void ForceField::add_others(int b, const LaneState& state, const LaneArrays<Coor
 }
 
 template <class Coordinate, class Real>
+void ForceField::BondPass<Coordinate, Real>::volumes(const Kernels& kernels, const kernels::NodeRange& range) const {
+  (block->breaking.is_possible() ? kernels.breaking.volumes : kernels.volumes)(network->template view_as<Real>(),
+                                                                               arrays, range);
+}
+
+template <class Coordinate, class Real>
+void ForceField::BondPass<Coordinate, Real>::bonds_from_before(const Kernels& kernels,
+                                                               const kernels::NodeRange& range) const {
+  const auto view = network->template view_as<Real>();
+  if (block->breaking.is_possible()) {
+    kernels.breaking.bonds_from_before(view, arrays, breaking, block->many_body, range);
+  } else {
+    kernels.bonds_from_before(view, arrays, parameters, block->many_body, range);
+  }
+}
+
+template <class Coordinate, class Real>
+void ForceField::BondPass<Coordinate, Real>::bonds(const Kernels& kernels,
+                                                   const kernels::BlockArraysOf<Coordinate, Real>& with, Virial virial,
+                                                   const kernels::NodeRange& range, std::int64_t& volumes_done,
+                                                   kernels::LaneSums& sums_of_range) const {
+  const auto view = network->template view_as<Real>();
+  if (block->breaking.is_possible()) {
+    kernels.breaking.bonds(view, with, breaking, block->many_body, virial, range, volumes_done, sums_of_range);
+  } else {
+    kernels.bonds(view, with, parameters, block->many_body, virial, range, volumes_done, sums_of_range);
+  }
+}
+
+template <class Coordinate, class Real>
 ForceField::BondPass<Coordinate, Real> ForceField::bond_pass(int b, LaneState& state,
                                                              LaneArrays<Coordinate, Real>& lanes, const Box& box,
                                                              const Evaluation& what) const {
@@ -82,7 +112,18 @@ ForceField::BondPass<Coordinate, Real> ForceField::bond_pass(int b, LaneState& s
                                    what.half_kick / material_.node_mass,
                                    material_.node_mass,
                                    {residual[0], residual[1], residual[2]}},
+                                  {},
                                   std::vector<kernels::LaneSums>(segments_of(block.n_nodes))};
+  if (block.breaking.is_possible()) {
+    const kernels::BondParameters& p = pass.parameters;
+    pass.breaking = {{p.law, block.breaking.in_tension_only, block.breaking.smooth},
+                     p.kick,
+                     p.half_kick,
+                     p.mass,
+                     {p.residual[0], p.residual[1], p.residual[2]}};
+    pass.arrays.memory = lanes.memory.data() + block.memory;
+    pass.arrays.keeps_memory = !what.is_trial;
+  }
   for (int lane = 0; lane < block.n_lanes; ++lane) {
     if (block.grain[lane] >= 0) {
       pass.residual_shift[lane] = residual.dot(state.origin(block.grain[lane]) - box.origin());
@@ -96,12 +137,15 @@ void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>&
                           const Evaluation& what) {
   // Scratch of one thread for all blocks: it stays in the cache, and memory is not asked for forces at all. Zero but in
   // here.
-  thread_local AlignedArray<Real> volume, force;
+  thread_local AlignedArray<Real> volume, rest_volume, force;
   BondPass<Coordinate, Real> pass = bond_pass(b, state, lanes, box, what);
   const Block& block = *pass.block;
   const auto n_lane_nodes = static_cast<std::size_t>(block.n_nodes) * block.n_lanes;
   if (block.many_body && volume.size() < n_lane_nodes) {
     volume.resize(n_lane_nodes, 0);
+  }
+  if (block.many_body && block.breaking.is_possible() && rest_volume.size() < n_lane_nodes) {
+    rest_volume.resize(n_lane_nodes, 0);
   }
   if (force.size() < 3 * n_lane_nodes) {
     force.resize(3 * n_lane_nodes, 0);
@@ -109,6 +153,7 @@ void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>&
   add_others(b, state, lanes, force.data(), what);
   pass.arrays.f = force.data();
   pass.arrays.volume = volume.data();
+  pass.arrays.rest_volume = rest_volume.data();
   pass.arrays.residual_shift = pass.residual_shift.data();
   pass.arrays.leaves_zeros = !what.keep_forces;
   ImageBondSums image_sums{};
@@ -121,20 +166,28 @@ void ForceField::bonds_of(int b, LaneState& state, LaneArrays<Coordinate, Real>&
   std::int64_t volumes_done = 0;
   const int n_segments = segments_of(block.n_nodes);
   for (int s = 0; s < n_segments; ++s) {
-    kernels_of(table_, lanes)
-        .bonds(
-            pass.network->template view_as<Real>(), pass.arrays, pass.parameters, block.many_body, what.virial,
-            {piece_begin(block.n_nodes, n_segments, s), piece_begin(block.n_nodes, n_segments, s + 1), block.n_nodes},
-            volumes_done, pass.sums[s]);
+    pass.bonds(
+        kernels_of(table_, lanes), pass.arrays, what.virial,
+        {piece_begin(block.n_nodes, n_segments, s), piece_begin(block.n_nodes, n_segments, s + 1), block.n_nodes},
+        volumes_done, pass.sums[s]);
   }
   if (what.keep_forces) {
     const auto forces = std::span(force).first(3 * n_lane_nodes);
     std::copy(forces.begin(), forces.end(), lanes.f.begin() + block.offset);
     std::fill(forces.begin(), forces.end(), Real{0});
     std::fill(volume.begin(), volume.end(), Real{0});
+    std::fill(rest_volume.begin(), rest_volume.end(), Real{0});
   }
   if (what.virial != Virial::none) {
     sum_up(block, pass.sums, image_sums);
+  }
+  note_broken(b, pass.sums);
+}
+
+void ForceField::note_broken(int b, std::span<const kernels::LaneSums> sums) {
+  if (layout_.blocks()[b].breaking.is_possible()) {
+    has_new_broken_[b] =
+        std::any_of(sums.begin(), sums.end(), [](const kernels::LaneSums& s) { return s.n_broken > 0; });
   }
 }
 
@@ -147,7 +200,7 @@ bool ForceField::can_split(const std::vector<int>& blocks) const {
 
 /// Scratch of the blocks that several threads share.
 template <class Real> struct SplitScratch {
-  AlignedArray<Real> volume, force;
+  AlignedArray<Real> volume, rest_volume, force;
   std::vector<AlignedArray<Real>> beyond; ///< copies of velocities behind the end of each piece
 };
 
@@ -166,12 +219,14 @@ public:
       const auto n_lane_nodes =
           static_cast<std::size_t>(passes_[k].block->n_nodes) * static_cast<std::size_t>(passes_[k].block->n_lanes);
       scratch[k].volume.resize(n_lane_nodes);
+      scratch[k].rest_volume.resize(passes_[k].block->breaking.is_possible() ? n_lane_nodes : 0);
       scratch[k].force.resize(3 * n_lane_nodes);
       scratch[k].beyond.resize(n_pieces);
     }
     for (std::size_t k = 0; k < blocks.size(); ++k) {
       passes_[k].arrays.f = scratch[k].force.data();
       passes_[k].arrays.volume = scratch[k].volume.data();
+      passes_[k].arrays.rest_volume = scratch[k].rest_volume.data();
       passes_[k].arrays.residual_shift = passes_[k].residual_shift.data();
     }
   }
@@ -181,10 +236,13 @@ public:
     const Block& block = *passes_[k].block;
     if (block.many_body) {
       const kernels::NodeRange range = range_of(task);
-      const auto first = scratch_[k].volume.begin();
-      std::fill(first + static_cast<std::ptrdiff_t>(range.begin) * block.n_lanes,
-                first + static_cast<std::ptrdiff_t>(range.end) * block.n_lanes, Real{0});
-      kernels_.volumes(passes_[k].network->template view_as<Real>(), passes_[k].arrays, range);
+      for (AlignedArray<Real>* volume : {&scratch_[k].volume, &scratch_[k].rest_volume}) {
+        if (!volume->empty()) {
+          std::fill(volume->begin() + static_cast<std::ptrdiff_t>(range.begin) * block.n_lanes,
+                    volume->begin() + static_cast<std::ptrdiff_t>(range.end) * block.n_lanes, Real{0});
+        }
+      }
+      passes_[k].volumes(kernels_, range);
     }
   }
 
@@ -193,7 +251,7 @@ public:
     const Block& block = *passes_[k].block;
     const kernels::NodeRange range = range_of(task);
     const auto network = passes_[k].network->template view_as<Real>();
-    kernels_.bonds_from_before(network, passes_[k].arrays, passes_[k].parameters, block.many_body, range);
+    passes_[k].bonds_from_before(kernels_, range);
     const std::int64_t width = 3 * static_cast<std::int64_t>(block.n_lanes);
     const Real* v = passes_[k].arrays.v;
     scratch_[k].beyond[piece].assign(v + width * range.end, v + width * network.reach[range.end - 1]);
@@ -206,11 +264,10 @@ public:
     arrays.v_beyond = scratch_[k].beyond[piece].data();
     std::int64_t volumes_done = block.n_nodes;
     for (int s = piece * most_pieces / n_pieces_; s < (piece + 1) * most_pieces / n_pieces_; ++s) {
-      kernels_.bonds(passes_[k].network->template view_as<Real>(), arrays, passes_[k].parameters, block.many_body,
-                     virial,
-                     {piece_begin(block.n_nodes, most_pieces, s), piece_begin(block.n_nodes, most_pieces, s + 1),
-                      piece_begin(block.n_nodes, n_pieces_, piece + 1)},
-                     volumes_done, passes_[k].sums[s]);
+      passes_[k].bonds(kernels_, arrays, virial,
+                       {piece_begin(block.n_nodes, most_pieces, s), piece_begin(block.n_nodes, most_pieces, s + 1),
+                        piece_begin(block.n_nodes, n_pieces_, piece + 1)},
+                       volumes_done, passes_[k].sums[s]);
     }
   }
 
@@ -264,6 +321,7 @@ void ForceField::split_bonds_of(const std::vector<int>& blocks, int n_pieces, La
     if (what.virial != Virial::none) {
       sum_up(*bonds.pass(k).block, bonds.pass(k).sums, {});
     }
+    note_broken(blocks[k], bonds.pass(k).sums);
   }
 }
 

@@ -50,6 +50,11 @@ ForceField::ForceField(const Packing& packing, const LaneLayout& layout, const M
   for (const Grain& grain : packing.grains) {
     network_of_grain_.push_back(&networks_[grain.template_index]);
   }
+  bonds_break_ = boba::bonds_break(packing);
+  if (has_periodic_template_ && bonds_break_) {
+    throw std::invalid_argument("break_strain: bonds do not break in networks that are bonded across the cell's "
+                                "boundary (periodic_box)");
+  }
   if (has_periodic_template_ && layout.precision() == Precision::mixed) {
     throw std::invalid_argument(
         "precision = \"mixed\" does not do networks that are bonded across the cell's boundary; "
@@ -71,6 +76,7 @@ void ForceField::layout_changed() {
   halo_.clear();
   contact_list_.layout_changed();
   collected_ = false;
+  bonds_changed();
 }
 
 /// Finds out which of these nodes move far; notes the largest speed^2 of those that the contact list does not follow.
@@ -203,6 +209,10 @@ void ForceField::evaluate_part(const Part& part, LaneState& state, const Box& bo
 
 void ForceField::evaluate(LaneState& state, const Box& box, const Evaluation& what) {
   const double start = omp_get_wtime();
+  if (bonds_break_) {
+    find_broken(state, !broken_are_known_);
+    has_new_broken_.assign(layout_.blocks().size(), 0);
+  }
   prepare_contacts(state, box);
   collected_ = false;
   seconds_.search += omp_get_wtime() - start;
@@ -220,6 +230,27 @@ void ForceField::evaluate(LaneState& state, const Box& box, const Evaluation& wh
     evaluate_part(shared_part_, state, box, what);
   }
   sum_walls();
+}
+
+/// Tells the contact list of the bonds that have broken: their nodes touch from now on. Collective.
+void ForceField::find_broken(const LaneState& state, bool all) {
+  const std::vector<Block>& blocks = layout_.blocks();
+  bool found = false;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    if (!blocks[b].breaking.is_possible() || !(all || has_new_broken_[b] != 0)) {
+      continue;
+    }
+    found = true;
+    for (const int grain : blocks[b].grain) {
+      if (grain >= 0) {
+        contact_list_.set_broken(grain, broken_bonds(state, grain));
+      }
+    }
+  }
+  broken_are_known_ = true;
+  if (distribution_.ranks->largest(found ? 1.0 : 0.0) > 0.0) {
+    contact_list_.note_broken();
+  }
 }
 
 /// Grain by grain: the same sum for any number of threads and ranks.
@@ -255,7 +286,7 @@ void ForceField::volumes_only(LaneState& state) const {
     using Arrays = std::remove_reference_t<decltype(lanes)>;
     AlignedArray<typename Arrays::Real> volume;
     for (const Block& block : layout_.blocks()) {
-      if (block.many_body) {
+      if (block.many_body && !block.breaking.is_possible()) {
         volume.assign(static_cast<std::size_t>(block.n_nodes) * block.n_lanes, 0);
         kernels_of(table_, lanes)
             .volumes(networks_[block.template_index].view_as<typename Arrays::Real>(),

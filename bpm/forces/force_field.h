@@ -50,6 +50,7 @@ struct Evaluation {
   double half_kick = 0.0; ///< full-step velocity = v + half_kick f / m, tau
   Virial virial = Virial::none;
   bool keep_forces = false; ///< write the forces to the state; otherwise they live in scratch only
+  bool is_trial = false;    ///< of a state that is put back: bonds that break here stay whole
   /// d/dt of the cell matrix as far as it does not act on positions (remap = "velocities"): an image displaced by h n
   /// moves with rate n, and the streaming velocity is taken from the kinetic tensor.
   Matrix3 residual_rate = Matrix3::Zero();
@@ -66,6 +67,8 @@ public:
 
   /// The layout holds other grains than before.
   void layout_changed();
+  /// The state was read from elsewhere, with what its bonds remember; see also ContactList::invalidate.
+  void bonds_changed() { broken_are_known_ = false; }
 
   /// Moves all nodes; per block, what the drift saw.
   std::vector<BlockMotion> drift(LaneState& state, kernels::Drift drift);
@@ -91,7 +94,14 @@ public:
   void volumes_only(LaneState& state) const;
   /// Pairwise elastic energy of all bonds, k d^2; a pass of its own, for rare use.
   double bond_energy(const LaneState& state, const Box& box) const;
-  /// The bond with the largest r / r0, over all grains; a pass of its own, for rare use.
+  /// Per node of a grain: how many of its bonds are whole; a pass of its own.
+  std::vector<int> whole_bonds(const LaneState& state, int grain) const;
+  /// Per node of a grain: the share of its bonds that are broken.
+  std::vector<double> damage(const LaneState& state, int grain) const;
+  /// Broken bonds of all grains. Collective.
+  std::int64_t n_broken_bonds(const LaneState& state) const;
+  bool bonds_break() const { return bonds_break_; }
+  /// The whole bond with the largest r / r0, over all grains; a pass of its own, for rare use.
   struct Stretch {
     double ratio = 0.0;
     int grain = 0, node = 0;
@@ -147,7 +157,15 @@ private:
     kernels::BlockArraysOf<Coordinate, Real> arrays;
     std::array<double, max_lanes> residual_shift;
     kernels::BondParameters parameters;
-    std::vector<kernels::LaneSums> sums; ///< of each segment
+    kernels::BondParametersOf<BreakingBondLaw> breaking; ///< the same for blocks whose bonds break
+    std::vector<kernels::LaneSums> sums;                 ///< of each segment
+
+    using Kernels = kernels::LaneKernels<Coordinate, Real>;
+    void volumes(const Kernels& kernels, const kernels::NodeRange& range) const;
+    void bonds_from_before(const Kernels& kernels, const kernels::NodeRange& range) const;
+    /// With these arrays, which are those of the pass but for what a piece has of its own.
+    void bonds(const Kernels& kernels, const kernels::BlockArraysOf<Coordinate, Real>& with, Virial virial,
+               const kernels::NodeRange& range, std::int64_t& volumes_done, kernels::LaneSums& sums_of_range) const;
   };
   template <class Coordinate, class Real>
   BondPass<Coordinate, Real> bond_pass(int b, LaneState& state, LaneArrays<Coordinate, Real>& lanes, const Box& box,
@@ -163,6 +181,9 @@ private:
   template <class Coordinate, class Real> class SplitBonds;
   void sum_up(const Block& block, std::span<const kernels::LaneSums> sums, const ImageBondSums& image_sums);
   bool can_split(const std::vector<int>& blocks) const;
+  void note_broken(int b, std::span<const kernels::LaneSums> sums);
+  void find_broken(const LaneState& state, bool all);
+  std::vector<kernels::NodePair> broken_bonds(const LaneState& state, int grain) const;
 
   /// Part of the pairs and blocks: those that need no other rank, and the rest.
   struct Part {
@@ -201,6 +222,9 @@ private:
   std::vector<kernels::ContactNode*> nodes_of_;           ///< node 0 of each grain that this rank knows
   std::vector<std::vector<double>> wall_forces_;          ///< per wall and grain
   bool has_periodic_template_ = false;
+  bool bonds_break_ = false;         ///< of some grain of the packing, on any rank
+  bool broken_are_known_ = false;    ///< to the contact list
+  std::vector<char> has_new_broken_; ///< per block, in the last evaluation
 };
 
 } // namespace boba

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 namespace boba {
@@ -90,6 +91,44 @@ void archive_cell(Archive& archive, Box& box) {
   }
 }
 
+/// What breaks the bonds of each grain; fields that are absent where none break.
+void archive_breaking(Archive& archive, Packing& packing) {
+  std::vector<Grain>& grains = packing.grains;
+  std::optional<std::vector<double>> strain, scatter;
+  std::optional<std::vector<std::int64_t>> in_tension_only, smooth, seed;
+  if (bonds_break(packing)) {
+    strain.emplace();
+    scatter.emplace();
+    in_tension_only.emplace();
+    smooth.emplace();
+    seed.emplace();
+    for (const Grain& grain : grains) {
+      strain->push_back(grain.breaking.strain);
+      scatter->push_back(grain.breaking.weibull_modulus);
+      in_tension_only->push_back(grain.breaking.in_tension_only ? 1 : 0);
+      smooth->push_back(grain.breaking.smooth ? 1 : 0);
+      seed->push_back(static_cast<std::int64_t>(grain.breaking.seed));
+    }
+  }
+  archive.field("break_strain", strain);
+  archive.field("break_scatter", scatter);
+  archive.field("break_in_tension_only", in_tension_only);
+  archive.field("break_smoothing", smooth);
+  archive.field("break_seed", seed);
+  if (!archive.is_reading() || !strain) {
+    return;
+  }
+  const std::size_t n = grains.size();
+  require(strain->size() == n && scatter && scatter->size() == n && in_tension_only && in_tension_only->size() == n &&
+              smooth && smooth->size() == n && seed && seed->size() == n && are_finite(*strain) && are_finite(*scatter),
+          "what breaks the bonds does not belong to the grains");
+  for (std::size_t g = 0; g < n; ++g) {
+    require((*strain)[g] >= 0.0 && (*scatter)[g] >= 0.0, "a grain's bonds break below no strain at all");
+    grains[g].breaking = {(*strain)[g], (*in_tension_only)[g] != 0, (*smooth)[g] != 0, (*scatter)[g],
+                          static_cast<std::uint64_t>((*seed)[g])};
+  }
+}
+
 void archive_grains(Archive& archive, Packing& packing) {
   std::vector<std::int64_t> templates, species, molecule;
   std::vector<double> alpha;
@@ -104,6 +143,7 @@ void archive_grains(Archive& archive, Packing& packing) {
   archive.field("molecule", molecule);
   archive.field("alpha", alpha);
   if (!archive.is_reading()) {
+    archive_breaking(archive, packing);
     return;
   }
   require(templates.size() == alpha.size() && species.size() == alpha.size() && molecule.size() == alpha.size() &&
@@ -115,6 +155,7 @@ void archive_grains(Archive& archive, Packing& packing) {
             "a grain names a template that is not there");
     packing.grains.push_back({static_cast<int>(templates[g]), static_cast<int>(species[g]), alpha[g], molecule[g]});
   }
+  archive_breaking(archive, packing);
 }
 
 } // namespace

@@ -25,6 +25,7 @@ struct TrajectoryOptions {
   bool velocity = false;        ///< store velocities; every snapshot then needs them
   int compression = 0;          ///< 0 (none, fastest) .. 9 of the node data
   bool nodes_by_others = false; ///< nodes of frames are put into the file by several ranks, see allocate_frame
+  bool damage = false;          ///< store the share of broken bonds of each node; every snapshot then needs it
 };
 
 /// Writes an H5MD 1.1 file frame by frame: positions and images, box, each grain's centre and stress, strain, and once

@@ -47,6 +47,12 @@ void check_numbers(const File& file, std::int64_t frame, const Snapshot& snapsho
   check("time", snapshot.time);
   check("strain", snapshot.strain);
   check("streaming rate", snapshot.streaming_rate);
+  for (const double share : snapshot.damage) {
+    if (!(share >= 0.0 && share <= 1.0)) {
+      refuse_frame(file, frame,
+                   fmt::format("the share of a node's bonds that are broken is {:g}; allowed: 0 to 1", share));
+    }
+  }
   for (const std::array<double, 6>& stress : snapshot.grain_stress) {
     for (const double value : stress) {
       check("stress of a grain", value);
@@ -69,7 +75,13 @@ void check_bonds(const File& file, std::int64_t frame, const Topology& topology,
   };
   // A lone grain may be a periodic specimen, whose bonds go through the faces of the cell.
   const bool may_cross = topology.n_grains() == 1;
+  const auto may_be_broken = [&](const Topology::Pair& bond) {
+    return !snapshot.damage.empty() && snapshot.damage[bond.i] > 0.0 && snapshot.damage[bond.j] > 0.0;
+  };
   for (const Topology::Pair& bond : topology.bonds) {
+    if (may_be_broken(bond)) {
+      continue;
+    }
     const Vector3 d = snapshot.position[bond.i] - snapshot.position[bond.j];
     if (!is_right(d.norm(), bond.r0) && !(may_cross && is_right(snapshot.box.minimum_image(d).norm(), bond.r0))) {
       refuse_frame(
@@ -107,6 +119,9 @@ void check_growing(const File& file, const Topology& topology) {
   check_element(file, value_of(image), integer, {n, 3});
   if (file.has(velocity)) {
     check_element(file, value_of(velocity), real, {n, 3});
+  }
+  if (file.has(damage)) {
+    check_element(file, value_of(damage), real, {n});
   }
   check_element(file, value_of(edges), real, {3, 3});
   check_element(file, value_of(box_origin), real, {3});

@@ -122,6 +122,9 @@ void make_elements(const File& file, const Topology& topology, const TrajectoryO
   if (options.velocity) {
     make_element(file, velocity, nodes, "d/tau");
   }
+  if (options.damage) {
+    make_element(file, damage, {{n}, 1, options.compression}, "1");
+  }
   make_element(file, edges, {{3, 3}, small_chunk, 0}, "d");
   make_element(file, box_origin, {{3}, small_chunk, 0}, "d");
   make_element(file, strain, {{}, small_chunk, 0}, "1");

@@ -18,8 +18,8 @@ void refuse_file(const hdf5::File& file, const std::string& why) {
 std::vector<std::string> growing_values(const hdf5::File& file) {
   std::vector<std::string> names;
   for (const char* name :
-       {position, image, velocity, edges, box_origin, strain, streaming_rate, grain_centre, grain_stress}) {
-    const bool optional = name == velocity || name == streaming_rate;
+       {position, image, velocity, damage, edges, box_origin, strain, streaming_rate, grain_centre, grain_stress}) {
+    const bool optional = name == velocity || name == damage || name == streaming_rate;
     if (!optional || file.has(name)) {
       names.push_back(std::string(name) + "/value");
     }

@@ -16,6 +16,7 @@ inline constexpr const char* box = "/particles/all/box";
 inline constexpr const char* position = "/particles/all/position";
 inline constexpr const char* image = "/particles/all/image";
 inline constexpr const char* velocity = "/particles/all/velocity";
+inline constexpr const char* damage = "/particles/all/boba_damage";
 inline constexpr const char* edges = "/particles/all/box/edges";
 inline constexpr const char* box_origin = "/particles/all/box/boba_origin";
 inline constexpr const char* strain = "/observables/strain";

@@ -79,6 +79,11 @@ Packing read_trajectory_packing(const std::filesystem::path& file, int frame, st
   const TrajectoryReader reader(file);
   const Topology& topology = reader.topology();
   Snapshot state = reader.snapshot(frame);
+  if (std::ranges::any_of(state.damage, [](double share) { return share > 0.0; })) {
+    throw InputError(fmt::format("{}: step {} has broken bonds, and a trajectory does not say which: a run that is to "
+                                 "continue from there needs its checkpoint",
+                                 file.string(), state.step));
+  }
   Packing packing;
   packing.box = state.box;
   Networks networks = networks_of(topology, reader.snapshot(0), file);

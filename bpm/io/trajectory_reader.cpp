@@ -121,6 +121,9 @@ Snapshot TrajectoryReader::snapshot(std::int64_t frame) const {
     if (has_velocity_) {
       snapshot.velocity = as_vectors(in.frame_of<double>(velocity, index));
     }
+    if (in.file.has(damage)) {
+      snapshot.damage = in.frame_of<double>(damage, index);
+    }
     snapshot.grain_centre = as_vectors(in.frame_of<double>(grain_centre, index));
     const std::vector<double> stress = in.frame_of<double>(grain_stress, index);
     snapshot.grain_stress.resize(stress.size() / 6);

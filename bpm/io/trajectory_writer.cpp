@@ -83,7 +83,10 @@ void rebuild(const std::filesystem::path& path, std::int64_t last_step) {
     const TrajectoryReader reader(path);
     const File from = File::open(path, false);
     TrajectoryWriter writer(copy, reader.topology(), reader.origin(),
-                            {reader.has_velocity(), from.compression(value_of(position))}, FileMode::overwrite);
+                            {.velocity = reader.has_velocity(),
+                             .compression = from.compression(value_of(position)),
+                             .damage = from.has(damage)},
+                            FileMode::overwrite);
     writer.close();
     File to = File::open(copy, true);
     if (from.has_attribute(box, "boundary")) {
@@ -102,7 +105,7 @@ void rebuild(const std::filesystem::path& path, std::int64_t last_step) {
 struct TrajectoryWriter::Impl {
   File file;
   std::size_t n_nodes = 0, n_grains = 0;
-  bool has_velocity = false, has_boundary = false;
+  bool has_velocity = false, has_damage = false, has_boundary = false;
   bool has_streaming_rate = true; ///< false for a file of a version that did not store it
   std::int64_t n_frames = 0;
   std::int64_t last_step = -1;
@@ -135,6 +138,7 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Topo
   impl_->n_nodes = topology.id.size();
   impl_->n_grains = static_cast<std::size_t>(topology.n_grains());
   impl_->has_velocity = options.velocity;
+  impl_->has_damage = options.damage;
   const File& file = impl_->file;
   file.reserve(index_room + origin_of_file.scene.size() + 64 * topology.id.size() + 64 * topology.first_node.size() +
                24 * topology.bonds.size() + 24 * undeformed_nodes(topology));
@@ -156,6 +160,7 @@ TrajectoryWriter TrajectoryWriter::go_on(const std::filesystem::path& path, cons
   impl->n_nodes = topology.id.size();
   impl->n_grains = static_cast<std::size_t>(topology.n_grains());
   impl->has_velocity = file.has(velocity);
+  impl->has_damage = file.has(damage);
   impl->has_streaming_rate = file.has(streaming_rate);
   check_growing(file, topology);
   const std::vector<std::int64_t> steps = complete_steps(file);
@@ -189,7 +194,10 @@ bool TrajectoryWriter::can_allocate_frames() const {
 void TrajectoryWriter::Impl::prepare(const Snapshot& snapshot) {
   need(snapshot.grain_centre.size(), n_grains, "grain centres");
   need(snapshot.grain_stress.size(), n_grains, "grain stresses");
-  file.reserve(index_room + (has_velocity ? 60 : 36) * n_nodes + 72 * n_grains);
+  file.reserve(index_room + (has_velocity ? 60 : 36) * n_nodes + (has_damage ? 8 : 0) * n_nodes + 72 * n_grains);
+  if (has_damage) {
+    need(snapshot.damage.size(), n_nodes, "shares of broken bonds");
+  }
   if (!has_boundary) {
     std::vector<std::string> boundary;
     for (const bool periodic : snapshot.box.periodic()) {
@@ -208,6 +216,9 @@ void TrajectoryWriter::Impl::finish(const Snapshot& snapshot) {
   write(edges, {h.data(), 9});
   write(box_origin, {corner.data(), 3});
   write(strain, {&snapshot.strain, 1});
+  if (has_damage) {
+    write(damage, snapshot.damage);
+  }
   if (has_streaming_rate) {
     write(streaming_rate, {&snapshot.streaming_rate, 1});
   }

@@ -26,6 +26,30 @@ int lanes_for(int grains_in_group, int block_lanes) {
   return grains_in_group == 1 ? 1 : grains_in_group <= 8 ? 8 : block_lanes;
 }
 
+/// Grains of one group share blocks: those of one template, with or without many-body forces, whose bonds break alike.
+struct Group {
+  int template_index;
+  bool many_body, breaks, in_tension_only, smooth;
+  auto operator<=>(const Group&) const = default;
+};
+
+Group group_of(const Grain& grain) {
+  const Breaking& breaking = grain.breaking;
+  const bool breaks = breaking.is_possible();
+  return {grain.template_index, grain.alpha != 0.0, breaks, breaks && breaking.in_tension_only,
+          breaks && breaking.smooth};
+}
+
+/// First bond of each node, and their number at last.
+std::vector<std::int64_t> first_bonds_of(const GrainTemplate& grain) {
+  std::vector<std::int64_t> first(grain.n_nodes() + 1, 0);
+  for (const Bond& bond : grain.bonds) {
+    ++first[bond.i + 1];
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  return first;
+}
+
 } // namespace
 
 LaneLayout::LaneLayout(const Packing& packing, Precision precision)
@@ -36,23 +60,36 @@ LaneLayout::LaneLayout(const Packing& packing, Precision precision, std::span<co
   std::sort(grains_.begin(), grains_.end());
   for (int g = 0; g < packing.n_grains(); ++g) {
     slots_[g].n_nodes = packing.template_of(g).n_nodes();
+    slots_[g].template_index = packing.grains[g].template_index;
   }
-  const auto group_of = [&](int g) {
-    return std::pair(packing.grains[g].template_index, packing.grains[g].alpha != 0.0);
-  };
-  std::map<std::pair<int, bool>, int> size_of_group; // in the whole packing: every rank must decide alike
-  for (int g = 0; g < packing.n_grains(); ++g) {
-    ++size_of_group[group_of(g)];
+  count_bonds(packing);
+  std::map<Group, int> size_of_group; // in the whole packing: every rank must decide alike
+  for (const Grain& grain : packing.grains) {
+    ++size_of_group[group_of(grain)];
   }
-  std::map<std::pair<int, bool>, std::vector<int>> groups;
+  std::map<Group, std::vector<int>> groups;
   for (const int g : grains_in_order) {
-    groups[group_of(g)].push_back(g);
+    groups[group_of(packing.grains[g])].push_back(g);
   }
   for (const auto& [key, members] : groups) {
     const int n_lanes = lanes_for(size_of_group.at(key), lanes_of_block(precision));
     for (std::size_t begin = 0; begin < members.size(); begin += n_lanes) {
       const std::size_t end = std::min<std::size_t>(begin + n_lanes, members.size());
       add_block(packing, {members.begin() + begin, members.begin() + end}, n_lanes);
+    }
+  }
+}
+
+void LaneLayout::count_bonds(const Packing& packing) {
+  for (const Grain& grain : packing.grains) {
+    const int t = grain.template_index;
+    if (!grain.breaking.is_possible() || first_bonds_.contains(t)) {
+      continue;
+    }
+    const std::vector<std::int64_t>& first =
+        first_bonds_.emplace(t, first_bonds_of(*packing.templates[t])).first->second;
+    for (std::size_t i = 1; i < first.size(); ++i) {
+      memory_slots_ = std::max(memory_slots_, static_cast<int>(first[i] - first[i - 1]));
     }
   }
 }
@@ -66,11 +103,23 @@ void LaneLayout::add_block(const Packing& packing, const std::vector<int>& grain
   block.many_body = packing.grains[grains.front()].alpha != 0.0;
   block.grain.assign(n_lanes, -1);
   block.alpha.assign(n_lanes, packing.grains[grains.front()].alpha);
+  block.breaking = packing.grains[grains.front()].breaking;
+  block.memory = memory_size_;
   for (int lane = 0; lane < static_cast<int>(grains.size()); ++lane) {
     const int g = grains[lane];
     block.grain[lane] = g;
     block.alpha[lane] = packing.grains[g].alpha;
-    slots_[g] = {block.offset + lane, n_lanes, block.n_nodes, static_cast<int>(blocks_.size()), lane};
+    slots_[g] = {block.offset + lane,
+                 n_lanes,
+                 block.n_nodes,
+                 static_cast<int>(blocks_.size()),
+                 lane,
+                 block.template_index,
+                 block.breaking.is_possible() ? memory_size_ + lane : -1};
+  }
+  if (block.breaking.is_possible()) {
+    const auto n_bonds = static_cast<std::int64_t>(packing.templates[block.template_index]->bonds.size());
+    memory_size_ += (n_bonds * n_lanes + 15) / 16 * 16;
   }
   const std::int64_t numbers = 3 * static_cast<std::int64_t>(block.n_nodes) * n_lanes;
   size_ += (numbers + 15) / 16 * 16; // every block starts on a cache line

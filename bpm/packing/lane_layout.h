@@ -5,6 +5,7 @@
 #include "bpm/packing/packing.h"
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct Block {
   bool many_body = false;    ///< some lane has alpha != 0
   std::vector<int> grain;    ///< per lane; -1 marks an idle lane
   std::vector<double> alpha; ///< per lane, k d
+  Breaking breaking;         ///< of its bonds, but for the strains, which each bond of each lane remembers
+  std::int64_t memory = 0;   ///< of the block's first number in the array of what bonds remember
 
   int n_grains() const;
 };
@@ -40,7 +43,8 @@ struct Block {
 ///
 /// An array is [block][node][component][lane]; component c of node i of grain g is at
 /// first(g) + (3 i + c) stride(g). Blocks hold grains of one template, and grains with alpha = 0 are kept
-/// apart from the others, so that a block without many-body forces never computes volumes.
+/// apart from the others, so that a block without many-body forces never computes volumes. So are grains whose bonds
+/// break, by how they do: what bonds remember is an array [block][bond][lane] of such blocks alone.
 class LaneLayout {
 public:
   explicit LaneLayout(const Packing& packing, Precision precision = Precision::full);
@@ -63,21 +67,39 @@ public:
   std::int64_t index(int grain, int node, int component) const {
     return slots_[grain].first + (3 * static_cast<std::int64_t>(node) + component) * slots_[grain].stride;
   }
+  /// Numbers that bonds remember, idle lanes included.
+  std::int64_t memory_size() const { return memory_size_; }
+  /// The bonds of a grain remember something.
+  bool remembers(int grain) const { return slots_[grain].memory >= 0; }
+  /// Place of a bond's number; `bond` counts those of the template.
+  std::int64_t memory_index(int grain, std::int64_t bond) const {
+    return slots_[grain].memory + bond * slots_[grain].stride;
+  }
+  /// First bond of each node of a grain that remembers, and their number at last (size n + 1).
+  const std::vector<std::int64_t>& first_bonds(int grain) const {
+    return first_bonds_.at(slots_[grain].template_index);
+  }
+  /// Most bonds that any node of a grain that remembers is the first of, in the whole packing; 0 when there is none.
+  int memory_slots() const { return memory_slots_; }
   /// Share of lanes that carry a grain, weighted with nodes (1 when no lane is idle).
   double filled() const;
 
 private:
   struct Slot {
     std::int64_t first = 0;
-    int stride = 1, n_nodes = 0, block = -1, lane = 0;
+    int stride = 1, n_nodes = 0, block = -1, lane = 0, template_index = 0;
+    std::int64_t memory = -1;
   };
+  void count_bonds(const Packing& packing);
   void add_block(const Packing& packing, const std::vector<int>& grains, int n_lanes);
 
   Precision precision_;
   std::vector<Block> blocks_;
   std::vector<Slot> slots_;
   std::vector<int> grains_;
-  std::int64_t size_ = 0;
+  std::int64_t size_ = 0, memory_size_ = 0;
+  int memory_slots_ = 0;
+  std::map<int, std::vector<std::int64_t>> first_bonds_; ///< by template, of those that remember
 };
 
 } // namespace boba

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/packing/lane_state.h"
 
+#include "bpm/grain/random.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,6 +40,20 @@ template <class Array> void set_triple(Array& array, std::int64_t at, std::int64
   }
 }
 
+/// e_c^2 of each bond of a grain. With scatter the strengths follow the distribution of Weibull, whose share of bonds
+/// that are weaker than e is 1 - exp(-(e / strain)^modulus); the numbers depend on the seed and the grain's number
+/// alone.
+std::vector<double> squared_strengths(const Breaking& breaking, int grain, std::int64_t n_bonds) {
+  std::vector<double> limits(n_bonds, breaking.strain * breaking.strain);
+  if (breaking.weibull_modulus > 0.0) {
+    Random random((breaking.seed << 32) ^ (0x9e3779b97f4a7c15ULL * (static_cast<std::uint64_t>(grain) + 1)));
+    for (double& limit : limits) {
+      limit *= std::pow(-std::log1p(-random.uniform()), 2.0 / breaking.weibull_modulus);
+    }
+  }
+  return limits;
+}
+
 } // namespace
 
 LaneState::LaneState(const Packing& packing, const LaneLayout& layout) : layout_(layout) {
@@ -63,7 +79,20 @@ void LaneState::reset(const Packing& packing) {
     arrays.x.assign(layout_.size(), 0);
     arrays.v.assign(layout_.size(), 0);
     arrays.f.assign(layout_.size(), 0);
+    arrays.memory.assign(layout_.memory_size(), 1); // of idle lanes: a strain that they never reach
   });
+  for (const int g : layout_.grains()) {
+    if (layout_.remembers(g)) {
+      const std::vector<double> limits =
+          squared_strengths(packing.grains[g].breaking, g, layout_.first_bonds(g).back());
+      visit([&](auto& arrays) {
+        for (std::size_t b = 0; b < limits.size(); ++b) {
+          arrays.memory[layout_.memory_index(g, static_cast<std::int64_t>(b))] =
+              static_cast<typename std::remove_reference_t<decltype(arrays)>::Real>(limits[b]);
+        }
+      });
+    }
+  }
   quantum_ = precision() == Precision::mixed ? quantum_for(packing) : 1.0;
   for (const Block& block : layout_.blocks()) {
     const GrainTemplate& undeformed = *packing.templates[block.template_index];
@@ -131,6 +160,41 @@ Vector3 LaneState::velocity(int grain, int node) const {
 Vector3 LaneState::force(int grain, int node) const {
   return visit(
       [&](const auto& arrays) { return triple(arrays.f, layout_.index(grain, node, 0), layout_.stride(grain)); });
+}
+
+double LaneState::bond_memory(int grain, std::int64_t bond) const {
+  return visit(
+      [&](const auto& arrays) { return static_cast<double>(arrays.memory[layout_.memory_index(grain, bond)]); });
+}
+
+std::vector<double> LaneState::memory_rows(int grain) const {
+  const auto n_slots = static_cast<std::size_t>(layout_.memory_slots());
+  std::vector<double> rows(n_slots * layout_.n_nodes(grain), 0.0);
+  if (layout_.remembers(grain)) {
+    const std::vector<std::int64_t>& first = layout_.first_bonds(grain);
+    for (int node = 0; node < layout_.n_nodes(grain); ++node) {
+      for (std::int64_t b = first[node]; b < first[node + 1]; ++b) {
+        rows[n_slots * node + (b - first[node])] = bond_memory(grain, b);
+      }
+    }
+  }
+  return rows;
+}
+
+void LaneState::set_memory_rows(int grain, const double* rows) {
+  if (!layout_.remembers(grain)) {
+    return;
+  }
+  const std::vector<std::int64_t>& first = layout_.first_bonds(grain);
+  visit([&](auto& arrays) {
+    using Real = typename std::remove_reference_t<decltype(arrays)>::Real;
+    for (int node = 0; node < layout_.n_nodes(grain); ++node) {
+      for (std::int64_t b = first[node]; b < first[node + 1]; ++b) {
+        arrays.memory[layout_.memory_index(grain, b)] =
+            static_cast<Real>(rows[static_cast<std::int64_t>(layout_.memory_slots()) * node + b - first[node]]);
+      }
+    }
+  });
 }
 
 void LaneState::set_position(int grain, int node, const Vector3& x) {
@@ -249,7 +313,7 @@ void LaneState::take(const LaneState& other) {
 std::size_t LaneState::bytes() const {
   return visit([](const auto& arrays) {
     return arrays.x.capacity() * sizeof(arrays.x[0]) +
-           (arrays.v.capacity() + arrays.f.capacity()) * sizeof(arrays.v[0]);
+           (arrays.v.capacity() + arrays.f.capacity() + arrays.memory.capacity()) * sizeof(arrays.v[0]);
   });
 }
 

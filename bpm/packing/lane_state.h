@@ -17,6 +17,7 @@ template <class Coordinate_, class Real_> struct LaneArrays {
   using Real = Real_;
   AlignedArray<Coordinate> x; ///< d, or quanta from the grain's origin
   AlignedArray<Real> v, f;    ///< d/tau, k d
+  AlignedArray<Real> memory;  ///< what bonds remember; empty where none does
 };
 
 /// The nodes of a packing as it moves. Velocities are those of half steps between steps (see Stepper).
@@ -49,6 +50,13 @@ public:
   void set_position(int grain, int node, const Vector3& x);
   void set_velocity(int grain, int node, const Vector3& v);
   void set_force(int grain, int node, const Vector3& f);
+
+  /// What a bond of a grain remembers; of grains whose bonds do.
+  double bond_memory(int grain, std::int64_t bond) const;
+  /// What all bonds of a grain remember: for each node a row of LaneLayout::memory_slots() numbers, those of the bonds
+  /// that it is the first node of and then zeros.
+  std::vector<double> memory_rows(int grain) const;
+  void set_memory_rows(int grain, const double* rows);
 
   Vector3 velocity_sum(int grain) const;
   /// Adds to the velocity of every node of a grain.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/packing/packing.h"
 
+#include <algorithm>
+
 namespace boba {
 
 std::vector<std::int64_t> Packing::first_nodes() const {
@@ -42,6 +44,10 @@ Topology Packing::topology(bool with_bonds) const {
     }
   }
   return topology;
+}
+
+bool bonds_break(const Packing& packing) {
+  return std::ranges::any_of(packing.grains, [](const Grain& grain) { return grain.breaking.is_possible(); });
 }
 
 Packing make_packing(const Box& box, std::vector<std::shared_ptr<const GrainTemplate>> templates,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/grain/grain_template.h"
+#include "bpm/laws/breaking.h"
 #include "bpm/packing/box.h"
 #include "bpm/packing/snapshot.h"
 
@@ -18,6 +19,7 @@ struct Grain {
   int species = 0;
   double alpha = 0.0;        ///< many-body coefficient, k d
   std::int64_t molecule = 0; ///< number shown in files
+  Breaking breaking = {};    ///< what breaks its bonds
 };
 
 /// Everything a run starts from: the cell, the grains and every node's position and velocity.
@@ -40,6 +42,9 @@ struct Packing {
   /// Bonds are written out for every grain only when `with_bonds`.
   Topology topology(bool with_bonds) const;
 };
+
+/// True when the bonds of some grain may break.
+bool bonds_break(const Packing& packing);
 
 /// Where one grain goes: the template's nodes are rotated about their mean, then moved to `centre`.
 struct Placement {

@@ -45,9 +45,12 @@ struct Snapshot {
   /// Shear rate that images move with while positions do not follow (remap = "velocities"), 1/tau; else 0.
   double streaming_rate = 0.0;
   Box box;
-  std::vector<Vector3> position;     ///< d
-  std::vector<Vector3> velocity;     ///< d/tau, full step; empty when not asked for
-  std::vector<Vector3> force;        ///< k d; empty when not asked for
+  std::vector<Vector3> position; ///< d
+  std::vector<Vector3> velocity; ///< d/tau, full step; empty when not asked for
+  std::vector<Vector3> force;    ///< k d; empty when not asked for
+  /// Per node of the whole packing: share of its bonds that are broken. Empty where bonds do not break, and on other
+  /// ranks than rank 0.
+  std::vector<double> damage;
   std::vector<Vector3> grain_centre; ///< d, unwrapped mean of the grain's nodes
   /// Each grain's own part of the stress, times the box volume (so the sum over grains / volume is the stress); k d,
   /// components xx yy zz xy xz yz, tension positive, kinetic part included.

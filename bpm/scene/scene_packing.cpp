@@ -36,6 +36,8 @@ std::vector<Grain> grains_of(const Scene& scene, const PoissonTable& table) {
     Grain grain;
     grain.template_index = species.template_index;
     grain.species = static_cast<int>(s);
+    grain.breaking = species.breaking;
+    grain.breaking.seed = scene.seed;
     try {
       grain.alpha = resolve_alpha(species.material, scene.material, table);
     } catch (const InputError& error) {

@@ -238,7 +238,26 @@ void read_species(const SceneTables& tables, Scene& scene) {
     species.template_index = template_of_species(table, scene);
     species.count = table.integer("count", 0);
     species.material = read_alpha(table, true);
+    species.breaking = read_breaking(table);
+    if (species.breaking.is_possible() &&
+        scene.templates[species.template_index].spec.shape == TemplateSpec::Shape::periodic_box) {
+      table.fail("break_strain", "is not for a periodic_box: bonds across the cell's boundary do not break");
+    }
     scene.species.push_back(species);
+  }
+}
+
+/// A copy that rests begins with whole bonds.
+void check_rests(const Scene& scene) {
+  const bool some_break =
+      std::ranges::any_of(scene.species, [](const SceneSpecies& s) { return s.breaking.is_possible(); });
+  for (const SceneMeasure& measure : scene.measures) {
+    if (measure.plan.rest && some_break) {
+      throw InputError(
+          fmt::format("{}: measure.relaxed = true is not for grains with break_strain: the copy that rests "
+                      "does not know which bonds are broken",
+                      scene.path.string()));
+    }
   }
 }
 
@@ -306,6 +325,7 @@ Scene read_tree(const std::string& text, const std::filesystem::path& path, cons
   read_templates(tables, scene);
   check_contact_law(tables, scene);
   read_species(tables, scene);
+  check_rests(scene);
   read_start(tables, scene, must_exist);
   scene.stages = read_stages(tables, scene);
   return scene;

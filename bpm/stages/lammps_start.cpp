@@ -20,7 +20,7 @@ SceneSection LammpsStart::section() {
 
 LammpsStart::LammpsStart(const SceneTable& table, const StartFiles& files)
     : reference_(files.file(table, "lammps_reference")), frame_(static_cast<int>(table.integer("frame", -1))),
-      material_(read_alpha(table, false)) {
+      material_(read_alpha(table, false)), breaking_(read_breaking(table)) {
   if (table.has("lammps_state")) {
     state_ = files.file(table, "lammps_state");
   }
@@ -36,6 +36,8 @@ Packing LammpsStart::make(const StartContext& context) const {
   const double alpha = context.alpha(material_);
   for (Grain& grain : packing.grains) {
     grain.alpha = alpha;
+    grain.breaking = breaking_;
+    grain.breaking.seed = context.seed;
   }
   return packing;
 }

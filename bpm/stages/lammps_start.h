@@ -23,6 +23,7 @@ private:
   std::optional<std::filesystem::path> state_;
   int frame_;
   AlphaChoice material_;
+  Breaking breaking_;
 };
 
 } // namespace boba

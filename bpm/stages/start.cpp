@@ -30,6 +30,32 @@ std::vector<SceneKey> alpha_keys(bool is_needed) {
   return {alpha, poisson};
 }
 
+Breaking read_breaking(const SceneTable& table) {
+  Breaking breaking;
+  const std::optional<double> strain = table.maybe_real("break_strain");
+  for (const char* key : {"break_in", "break_smoothing", "break_scatter"}) {
+    if (!strain && table.has(key)) {
+      table.fail(key, "needs break_strain beside it");
+    }
+  }
+  breaking.strain = strain.value_or(0.0);
+  breaking.in_tension_only = table.text("break_in", "either") == "tension";
+  breaking.smooth = table.boolean("break_smoothing", false);
+  breaking.weibull_modulus = table.maybe_real("break_scatter").value_or(0.0);
+  return breaking;
+}
+
+std::vector<SceneKey> breaking_keys() {
+  return {above_key("break_strain", "", 0.0, 10.0, "",
+                    "strain (r - r0) / r0 above which a bond breaks for good; its nodes then touch like any unbonded "
+                    "pair (docs/notation.md)"),
+          choice_key("break_in", {"either", "tension"}, "\"either\"",
+                     "bonds break when they are stretched or compressed too far, or in tension alone"),
+          boolean_key("break_smoothing", "false", "a bond's force fades as 1 - (e / break_strain)^8"),
+          above_key("break_scatter", "", 0.0, 1000.0, "",
+                    "strengths scatter from bond to bond: Weibull's modulus, with break_strain as scale")};
+}
+
 std::filesystem::path StartFiles::file(const SceneTable& table, const std::string& key) const {
   std::filesystem::path path = folder / table.text(key, "");
   std::error_code error;

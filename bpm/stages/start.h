@@ -30,6 +30,11 @@ AlphaChoice read_alpha(const SceneTable& table, bool is_needed);
 /// The keys of such a table.
 std::vector<SceneKey> alpha_keys(bool is_needed);
 
+/// What breaks the bonds of some grains, but for the seed. \throws InputError when a key has nothing to act on.
+Breaking read_breaking(const SceneTable& table);
+/// The keys of such a table.
+std::vector<SceneKey> breaking_keys();
+
 struct SceneTemplate {
   std::string name;
   TemplateSpec spec;
@@ -40,6 +45,7 @@ struct SceneSpecies {
   int template_index = 0;
   std::int64_t count = 0;
   AlphaChoice material;
+  Breaking breaking; ///< but for the seed
 };
 
 /// The grains that a scene names.

@@ -20,6 +20,7 @@ private:
   std::filesystem::path file_;
   int frame_;
   AlphaChoice material_;
+  Breaking breaking_;
 };
 
 } // namespace boba

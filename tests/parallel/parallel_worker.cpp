@@ -147,9 +147,18 @@ void run_case(const std::string& name, const Ranks& ranks, Bits& bits) {
   }
 }
 
-/// Every few steps all grains are dealt out anew, at random.
-void run_migrating(const Ranks& ranks, Bits& bits) {
-  Stepper stepper(twenty_grains(), {}, {.ranks = &ranks});
+/// The same with bonds that break, but for some grains.
+Packing twenty_breakable_grains() {
+  Packing packing = twenty_grains();
+  for (std::size_t g = 0; g < packing.grains.size(); ++g) {
+    packing.grains[g].breaking = {.strain = g % 5 == 0 ? 0.0 : 0.12, .weibull_modulus = 6.0};
+  }
+  return packing;
+}
+
+/// Every few steps the grains get other owners, at random.
+void run_migrating(Packing packing, const Ranks& ranks, Bits& bits) {
+  Stepper stepper(std::move(packing), {}, {.ranks = &ranks});
   stepper.start();
   std::mt19937 random(5);
   for (int step = 0; step < 300; ++step) {
@@ -164,6 +173,19 @@ void run_migrating(const Ranks& ranks, Bits& bits) {
     stepper.move_cell({.shear = 3e-2, .dilation = 0.05 * (stepper.pressure() - 0.05)});
   }
   bits.add("strain", stepper.strain());
+  for (int g = 0; g < stepper.packing().n_grains(); ++g) {
+    double whole = 0.0;
+    for (const int n :
+         stepper.layout().holds(g) ? stepper.forces().whole_bonds(stepper.moving().state, g) : std::vector<int>{}) {
+      whole += 0.5 * n;
+    }
+    whole = ranks.largest(whole);
+    bits.add("whole bonds", whole);
+    if (stepper.packing().grains[g].breaking.is_possible() &&
+        whole == static_cast<double>(stepper.packing().template_of(g).bonds.size())) {
+      throw std::runtime_error(fmt::format("no bond of grain {} has broken", g));
+    }
+  }
   bits.add(totals_of(stepper.moving()));
   bits.add(take_snapshot(stepper.moving(), all_parts));
 }
@@ -246,7 +268,9 @@ int work(int argc, char** argv, const Ranks& ranks) {
   const std::string name = argv[1];
   Bits bits;
   if (name == "migrating") {
-    run_migrating(ranks, bits);
+    run_migrating(twenty_grains(), ranks, bits);
+  } else if (name == "breaking") {
+    run_migrating(twenty_breakable_grains(), ranks, bits);
   } else if (name == "blow_up") {
     run_blow_up(ranks);
   } else if (name == "dealt") {

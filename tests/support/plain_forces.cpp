@@ -49,7 +49,15 @@ PlainForces plain_forces(const Packing& packing, const Material& m, int n_images
   std::set<std::pair<std::int64_t, std::int64_t>> bonded;
   for (int g = 0; g < packing.n_grains(); ++g) {
     std::vector<Real> volume(packing.template_of(g).n_nodes(), 0), volume0 = volume;
+    const double limit = packing.grains[g].breaking.strain;
+    const auto is_broken = [&](const Bond& bond) {
+      const Real r = pair_of(x[first[g] + bond.i], x[first[g] + bond.j], v[0], v[0]).r;
+      return limit > 0.0 && std::abs(r - bond.r0) > limit * bond.r0;
+    };
     for (const Bond& bond : packing.template_of(g).bonds) {
+      if (is_broken(bond)) {
+        continue;
+      }
       const Real r = pair_of(x[first[g] + bond.i], x[first[g] + bond.j], v[0], v[0]).r;
       for (const int node : {bond.i, bond.j}) {
         volume[node] += r * r * r;
@@ -57,6 +65,9 @@ PlainForces plain_forces(const Packing& packing, const Material& m, int n_images
       }
     }
     for (const Bond& bond : packing.template_of(g).bonds) {
+      if (is_broken(bond)) {
+        continue;
+      }
       const std::int64_t i = first[g] + bond.i, j = first[g] + bond.j;
       bonded.insert({i, j});
       bonded.insert({j, i});

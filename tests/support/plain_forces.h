@@ -9,7 +9,8 @@
 namespace boba::test {
 
 /// Forces on every node and the virial sum r_ij f_ij, by the plainest loops there are: every pair, every image, long
-/// double. The oracle of the lane kernels and of the contact search; a few hundred nodes at most.
+/// double. Bonds beyond Breaking::strain are left out, as they are once they have broken. The oracle of the lane
+/// kernels and of the contact search; a few hundred nodes at most.
 struct PlainForces {
   std::vector<Vector3> force;
   Matrix3 virial = Matrix3::Zero();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bond pass, for any bond law: kernels.cpp makes it for bpm/laws/bond.h, once for each instruction set.
+// The bond pass, for any bond law: kernels.cpp makes it for those of bpm/laws, once for each instruction set.
 #pragma once
 
 #include "bpm/forces/kernels/kernels.h"
@@ -45,6 +45,16 @@ template <class V> inline V cube_of(const Triple<V>& d) {
   return r2 * r2 * inverse_sqrt(r2);
 }
 
+/// A bond law with a memory, such as BreakingBondLaw.
+template <class Law> constexpr bool remembers = requires {
+  Law::n_remembered;
+};
+
+/// What bond b remembers in the lanes at hand; `memory` points to the first of them.
+template <class S, class Real> inline typename S::V remembered(const Real* memory, std::int64_t b) {
+  return load<typename S::V>(memory + b * S::stride);
+}
+
 /// Adds r^3 of the bonds of the nodes [begin, end) to the volumes of both of their nodes, but not to nodes from own_end
 /// on; that of a node is then complete, and becomes d^3. Pointers start at the first lane.
 template <class S, bool shared, class Coordinate = typename S::Coordinate, class Real = typename S::Real>
@@ -67,6 +77,37 @@ void node_volumes(const NetworkOf<Real>& network, const Coordinate* x, Real* vol
       }
     }
     store<V>(volume + i * stride, S::in_diameters(sum, q3));
+  }
+}
+
+/// The same for a law with a memory, of the bonds that are whole; r0^3 too, into the rest volumes.
+template <class S, bool shared, class Law, class Coordinate = typename S::Coordinate, class Real = typename S::Real>
+void whole_node_volumes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a, int lane,
+                        std::int64_t begin, std::int64_t end, std::int64_t own_end) {
+  using V = typename S::V;
+  using P = typename S::P;
+  constexpr std::int64_t stride = S::stride;
+  const Coordinate* x = a.x + lane;
+  Real *volume = a.volume + lane, *rest_volume = a.rest_volume + lane;
+  const V q3 = splat<V>(a.quantum * a.quantum * a.quantum);
+  for (std::int64_t i = begin; i < end; ++i) {
+    const Triple<P> xi = load3<P>(x, i, stride);
+    V sum = load<V>(volume + i * stride), rest_sum = load<V>(rest_volume + i * stride);
+    for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
+      const Real r0 = network.bonds[b].r0;
+      const std::int64_t j = network.bonds[b].other;
+      const V memory = remembered<S>(a.memory + lane, b);
+      const V cube = Law::if_whole(cube_of(separation<S>(xi, load3<P>(x, j, stride))), memory);
+      const V rest_cube = Law::if_whole(splat<V>(r0 * r0 * r0), memory);
+      sum += cube;
+      rest_sum += rest_cube;
+      if (!shared || j < own_end) {
+        store<V>(volume + j * stride, load<V>(volume + j * stride) + cube);
+        store<V>(rest_volume + j * stride, load<V>(rest_volume + j * stride) + rest_cube);
+      }
+    }
+    store<V>(volume + i * stride, S::in_diameters(sum, q3));
+    store<V>(rest_volume + i * stride, rest_sum);
   }
 }
 
@@ -106,6 +147,29 @@ void volumes_of_nodes(const NetworkOf<Real>& network, const BlockArraysOf<Coordi
       store<V>(volume + j * S::stride, load<V>(volume + j * S::stride) + cube);
     });
     node_volumes<S, true>(network, x, volume, a.quantum, range.begin, range.end, range.own_end);
+  });
+}
+
+template <class Coordinate, class Real, class Law>
+void volumes_of_whole_bonds(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a,
+                            const NodeRange& range) {
+  for_lanes<Coordinate>(a.n_lanes, [&](int lane, auto storage) {
+    using S = decltype(storage);
+    using V = typename S::V;
+    using P = typename S::P;
+    const Coordinate* x = a.x + lane;
+    Real *volume = a.volume + lane, *rest_volume = a.rest_volume + lane;
+    for_each_bond_from_before(network, range, [&](std::int64_t i, std::int64_t b) {
+      const Real r0 = network.bonds[b].r0;
+      const std::int64_t j = network.bonds[b].other;
+      const V memory = remembered<S>(a.memory + lane, b);
+      const V cube =
+          Law::if_whole(cube_of(separation<S>(load3<P>(x, i, S::stride), load3<P>(x, j, S::stride))), memory);
+      store<V>(volume + j * S::stride, load<V>(volume + j * S::stride) + cube);
+      store<V>(rest_volume + j * S::stride,
+               load<V>(rest_volume + j * S::stride) + Law::if_whole(splat<V>(r0 * r0 * r0), memory));
+    });
+    whole_node_volumes<S, true, Law>(network, a, lane, range.begin, range.end, range.own_end);
   });
 }
 
@@ -168,6 +232,23 @@ inline V bond_scale(const BondRecordOf<Real>& bond, const Triple<V>& d, V r2, V 
   return force * inverse_r;
 }
 
+/// The same by a law with a memory; `rest_volumes`: V0_i + V0_j of the bonds that are whole.
+template <class S, bool many_body, class Law, class V = typename S::V, class Real = typename S::Real>
+inline V remembering_scale(const BondRecordOf<Real>& bond, const Triple<V>& d, V r2, V quantum, const Triple<V>& vi,
+                           const Triple<V>& vj, V volumes, V rest_volumes, V alpha, const Law& law, V& memory) {
+  const V inverse_r = inverse_sqrt(r2);
+  const V r = S::in_diameters(r2 * inverse_r, quantum);
+  const V normal_velocity = dot(d, difference(vi, vj)) * inverse_r;
+  V force;
+  if constexpr (many_body) {
+    const V root = cube_root(volumes / rest_volumes);
+    force = law.force(alpha, r, bond.r0, bond.inverse_r0, root, normal_velocity, memory);
+  } else {
+    force = law.pairwise_force(r, bond.r0, bond.inverse_r0, normal_velocity, memory);
+  }
+  return Law::if_whole(force * inverse_r, memory);
+}
+
 /// Takes s d, the force on a bond's first node, from its second node j.
 template <class V, class Real>
 inline void add_to_second(Real* f, std::int64_t j, std::int64_t stride, V s, const Triple<V>& d) {
@@ -176,6 +257,42 @@ inline void add_to_second(Real* f, std::int64_t j, std::int64_t stride, V s, con
     fj.c[c] = subtract_product(fj.c[c], s, d.c[c]);
   }
   store3<V>(f, j, stride, fj);
+}
+
+/// V0_i + V0_j in the lanes at hand.
+template <class S, class Coordinate, class Real>
+inline typename S::V rest_volumes_of(const BlockArraysOf<Coordinate, Real>& a, int lane, std::int64_t i,
+                                     std::int64_t j) {
+  using V = typename S::V;
+  return load<V>(a.rest_volume + lane + i * S::stride) + load<V>(a.rest_volume + lane + j * S::stride);
+}
+
+/// True when any lane of `now` is not the same as before.
+template <class V> inline bool any_changed(V before, V now) {
+  if constexpr (lanes_of<V> == 1) {
+    return before != now;
+  } else {
+    return any_above(before, now); // what is remembered only falls
+  }
+}
+
+/// Force over distance of bond b from node i, by a law with a memory, which is written back where it changes.
+template <class S, bool many_body, class Law, class Coordinate, class Real, class V = typename S::V>
+inline V scale_and_remember(const BlockArraysOf<Coordinate, Real>& a, int lane, std::int64_t i, std::int64_t b,
+                            const BondRecordOf<Real>& bond, const Triple<V>& d, V r2, V quantum, const Triple<V>& vi,
+                            const Triple<V>& vj, V volumes, V alpha, const Law& law, LaneSums& sums) {
+  V rest_volumes{};
+  if constexpr (many_body) {
+    rest_volumes = rest_volumes_of<S>(a, lane, i, bond.other);
+  }
+  const V before = remembered<S>(a.memory + lane, b);
+  V memory = before;
+  const V s = remembering_scale<S, many_body>(bond, d, r2, quantum, vi, vj, volumes, rest_volumes, alpha, law, memory);
+  if (__builtin_expect(any_changed(before, memory), 0) && a.keeps_memory) {
+    store<V>(a.memory + lane + b * S::stride, memory);
+    ++sums.n_broken;
+  }
+  return s;
 }
 
 /// One pass over a range of nodes. A node's force is complete when its own bonds are done, since bonds to earlier nodes
@@ -207,7 +324,11 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
         const std::int64_t ahead = volume_chunk;
         const std::int64_t end =
             network.reach[i] + ahead < network.n_nodes ? network.reach[i] + ahead : network.n_nodes;
-        node_volumes<S, false>(network, x, volume, a.quantum, volumes_done, end, network.n_nodes);
+        if constexpr (remembers<Law>) {
+          whole_node_volumes<S, false, Law>(network, a, lane, volumes_done, end, network.n_nodes);
+        } else {
+          node_volumes<S, false>(network, x, volume, a.quantum, volumes_done, end, network.n_nodes);
+        }
         volumes_done = end;
       }
     }
@@ -233,7 +354,12 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
       if constexpr (many_body) {
         volumes = volume_i + load<V>(volume + j * stride);
       }
-      const V s = bond_scale<S, many_body, damped>(bond, d, r2, q, vi, vj, volumes, alpha, law);
+      V s;
+      if constexpr (remembers<Law>) {
+        s = scale_and_remember<S, many_body>(a, lane, i, b, bond, d, r2, q, vi, vj, volumes, alpha, law, sums);
+      } else {
+        s = bond_scale<S, many_body, damped>(bond, d, r2, q, vi, vj, volumes, alpha, law);
+      }
       for (int c = 0; c < 3; ++c) {
         fi.c[c] = multiply_add(s, d.c[c], fi.c[c]);
       }
@@ -249,6 +375,9 @@ void bond_lanes(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, 
     store3<V>(f, i, stride, a.leaves_zeros ? Triple<V>{} : fi);
     if (many_body && a.leaves_zeros) {
       store<V>(volume + i * stride, V{});
+      if constexpr (remembers<Law>) {
+        store<V>(a.rest_volume + lane + i * stride, V{});
+      }
     }
     Triple<V> kicked, full;
     for (int c = 0; c < 3; ++c) {
@@ -279,12 +408,22 @@ template <class Call> inline void with_constants(bool x, bool y, Call&& call) {
   with_constant(x, [&](auto is_x) { with_constant(y, [&](auto is_y) { call(is_x, is_y); }); });
 }
 
+/// The same with whether the bonds have many-body forces, and whether they are damped: those of laws with a memory
+/// always are.
+template <class Law, class Call> inline void with_variant(bool many_body, const Law& law, Call&& call) {
+  if constexpr (remembers<Law>) {
+    with_constant(many_body, [&](auto is_many_body) { call(is_many_body, Yes{}); });
+  } else {
+    with_constants(many_body, law.is_damped(), call);
+  }
+}
+
 template <class Coordinate, class Real, class Law>
 void bond_forces(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a,
                  const BondParametersOf<Law>& p, bool many_body, Virial virial, const NodeRange& range,
                  std::int64_t& volumes_done, LaneSums& sums) {
   const std::int64_t done_before = volumes_done; // the same for every register of lanes
-  with_constants(many_body, p.law.is_damped(), [&](auto is_many_body, auto is_damped) {
+  with_variant<Law>(many_body, p.law, [&](auto is_many_body, auto is_damped) {
     with_constant(range.own_end < network.n_nodes, [&](auto is_shared) {
       for_lanes<Coordinate>(a.n_lanes, [&](int lane, auto storage) {
         using S = decltype(storage);
@@ -294,8 +433,9 @@ void bond_forces(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate,
         case Virial::none:
           bond_lanes<S, m, d, o, Virial::none>(network, a, p, lane, range, volumes_done, sums);
           break;
-        case Virial::trace:
-          bond_lanes<S, m, d, o, Virial::trace>(network, a, p, lane, range, volumes_done, sums);
+        case Virial::trace: // as a part of the full tensor for laws with a memory: one loop less to compile
+          bond_lanes<S, m, d, o, remembers<Law> ? Virial::full : Virial::trace>(network, a, p, lane, range,
+                                                                                volumes_done, sums);
           break;
         case Virial::full:
           bond_lanes<S, m, d, o, Virial::full>(network, a, p, lane, range, volumes_done, sums);
@@ -328,7 +468,17 @@ void lanes_from_before(const NetworkOf<Real>& network, const BlockArraysOf<Coord
     if constexpr (many_body) {
       volumes = load<V>(a.volume + lane + i * stride) + load<V>(a.volume + lane + j * stride);
     }
-    const V s = bond_scale<S, many_body, damped>(network.bonds[b], d, dot(d, d), q, vi, vj, volumes, alpha, law);
+    V s;
+    if constexpr (remembers<Law>) {
+      V rest_volumes{}, memory = remembered<S>(a.memory + lane, b);
+      if constexpr (many_body) {
+        rest_volumes = rest_volumes_of<S>(a, lane, i, j);
+      }
+      s = remembering_scale<S, many_body>(network.bonds[b], d, dot(d, d), q, vi, vj, volumes, rest_volumes, alpha, law,
+                                          memory);
+    } else {
+      s = bond_scale<S, many_body, damped>(network.bonds[b], d, dot(d, d), q, vi, vj, volumes, alpha, law);
+    }
     add_to_second(f, j, stride, s, d);
   });
 }
@@ -336,7 +486,7 @@ void lanes_from_before(const NetworkOf<Real>& network, const BlockArraysOf<Coord
 template <class Coordinate, class Real, class Law>
 void bond_forces_from_before(const NetworkOf<Real>& network, const BlockArraysOf<Coordinate, Real>& a,
                              const BondParametersOf<Law>& p, bool many_body, const NodeRange& range) {
-  with_constants(many_body, p.law.is_damped(), [&](auto is_many_body, auto is_damped) {
+  with_variant<Law>(many_body, p.law, [&](auto is_many_body, auto is_damped) {
     for_lanes<Coordinate>(a.n_lanes, [&](int lane, auto storage) {
       lanes_from_before<decltype(storage), is_many_body.value, is_damped.value>(network, a, p, lane, range);
     });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/laws/bond.h"
+#include "bpm/laws/breaking.h"
 #include "bpm/laws/contact.h"
 #include "bpm/laws/hertz.h"
 #include "bpm/packing/max_lanes.h"
@@ -52,6 +53,10 @@ template <class Coordinate, class Real> struct BlockArraysOf {
   /// Velocities of the nodes from NodeRange::own_end on, as they were before another thread kicked them; null: all
   /// nodes are the call's own.
   const Real* v_beyond = nullptr;
+  /// What the bonds of laws with a memory remember, [bond][lane], and whether a pass may change that; their V0 are
+  /// scratch like `volume`.
+  Real *memory = nullptr, *rest_volume = nullptr;
+  bool keeps_memory = false;
 };
 using BlockArrays = BlockArraysOf<double, double>;
 
@@ -83,6 +88,7 @@ enum class Virial { none, trace, full };
 struct LaneSums {
   double virial[7][max_lanes];
   double kinetic[7][max_lanes];
+  std::int64_t n_broken; ///< registers in which bonds broke; of laws with a memory alone
 };
 
 struct Drift {
@@ -180,6 +186,16 @@ struct PlaceRange {
   std::int32_t begin, end;
 };
 
+/// The passes over the bonds of a law with a memory; as those of LaneKernels.
+template <class Coordinate, class Real, class Law> struct RememberingKernels {
+  /// Of the bonds that are whole; V0 too.
+  void (*volumes)(const NetworkOf<Real>&, const BlockArraysOf<Coordinate, Real>&, const NodeRange&);
+  void (*bonds)(const NetworkOf<Real>&, const BlockArraysOf<Coordinate, Real>&, const BondParametersOf<Law>&,
+                bool many_body, Virial, const NodeRange&, std::int64_t& volumes_done, LaneSums&);
+  void (*bonds_from_before)(const NetworkOf<Real>&, const BlockArraysOf<Coordinate, Real>&,
+                            const BondParametersOf<Law>&, bool many_body, const NodeRange&);
+};
+
 /// The kernels that walk through lane arrays.
 template <class Coordinate, class Real> struct LaneKernels {
   /// volume[node][lane] += r^3 of every bond, for the nodes of a range.
@@ -192,6 +208,7 @@ template <class Coordinate, class Real> struct LaneKernels {
   /// Adds to a range's nodes the forces of their bonds with nodes before the range. Volumes must be known.
   void (*bonds_from_before)(const NetworkOf<Real>&, const BlockArraysOf<Coordinate, Real>&, const BondParameters&,
                             bool many_body, const NodeRange&);
+  RememberingKernels<Coordinate, Real, BreakingBondLaw> breaking;
   DriftResult (*drift)(Coordinate* x, const Real* v, int n_nodes, int n_lanes, const Drift&);
   /// to[node] of every listed node of one grain: its position (origin + what the arrays hold) and velocity.
   void (*collect)(const std::int32_t* nodes, std::int64_t n, const Coordinate* x, const Real* v, int stride,
