@@ -168,9 +168,13 @@ private:
         return stop();
       }
       write_checkpoint();
-      log_.say(summary_.text(simulation_, stage.label));
+      const bool missed = stage.driver->has_missed();
+      log_.say(summary_.text(simulation_, stage.label) + (missed ? " (a target was missed)" : ""));
       if (const std::string report = stage.driver->report(); !report.empty()) {
         log_.say(stage.label + ": " + report);
+      }
+      if (missed && stage.is_strict) {
+        return end_strictly(stage);
       }
     }
     return finish();
@@ -189,10 +193,22 @@ private:
     return ExitCode::stopped;
   }
 
-  ExitCode finish() {
+  ExitCode end_strictly(const PreparedStage& stage) {
+    close_trajectory();
+    log_.say(fmt::format("{}: strict = true: the run ends here, because a target was missed; boba resume {} continues "
+                         "it with the next stage",
+                         stage.label, setup_.folder.root().string()));
+    return ExitCode::check_failed;
+  }
+
+  void close_trajectory() {
     if (writers_.trajectory) {
       writers_.trajectory->close();
     }
+  }
+
+  ExitCode finish() {
+    close_trajectory();
     const Timings t = simulation_.timings();
     log_.note(fmt::format("seconds: bonds {:.2f}, contacts {:.2f}, search {:.2f}, integration {:.2f}; {} steps, {} "
                           "contact lists",

@@ -6,6 +6,7 @@
 #include "bpm/io/trajectory.h"
 #include "bpm/io/vtk.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 #include <optional>
@@ -163,15 +164,17 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
   const auto schedule = [&](const OutputInterval& every) {
     return Schedule(every, path_of_strain(setup, simulation), simulation.time());
   };
-  const std::vector<std::string> columns = run_table_columns(bonds_break(simulation.packing()));
+  const bool with_stress =
+      std::ranges::any_of(setup.scene.stages, [](const SceneStage& stage) { return stage.entry->shows_stress(); });
+  const std::vector<std::string> columns = run_table_columns({bonds_break(simulation.packing()), with_stress});
   const bool writes = simulation.ranks().is_root();
   std::optional<TableWriter> table;
   if (writes) {
     table = setup.restart ? TableWriter::go_on(setup.folder.table(), columns, last_step_of(setup, table_name))
                           : TableWriter(setup.folder.table(), columns);
   }
-  writers.table =
-      std::make_unique<TableObserver>(std::move(table), schedule(plan.table), numbers, last_step_of(setup, table_name));
+  writers.table = std::make_unique<TableObserver>(std::move(table), schedule(plan.table), numbers,
+                                                  last_step_of(setup, table_name), with_stress);
 
   // Files are cut behind what the checkpoint knows of, not at its step: rows of the same step may have come later.
   const auto add = [&](const std::string& name, const FrameOutput& output, FrameObserver::Write write,

@@ -9,7 +9,7 @@
 
 namespace boba {
 
-std::vector<std::string> run_table_columns(bool bonds_break) {
+std::vector<std::string> run_table_columns(const TableParts& parts) {
   std::vector<std::string> columns = {"step",
                                       "time_tau",
                                       "stage",
@@ -31,8 +31,13 @@ std::vector<std::string> run_table_columns(bool bonds_break) {
                                       "end_gap_d",
                                       "end_force_kd",
                                       "speed_steps/s"};
-  if (bonds_break) {
+  if (parts.broken_bonds) {
     columns.insert(columns.end() - 1, "broken_bonds");
+  }
+  if (parts.stress) {
+    for (const char* component : {"xx", "yy", "zz", "xy", "xz", "yz"}) {
+      columns.push_back(std::string("stress_") + component + "_k/d");
+    }
   }
   return columns;
 }
@@ -87,6 +92,9 @@ void TableObserver::observe(const Simulation& simulation, const StageProgress& p
     values.push_back(static_cast<double>(*totals.n_broken_bonds));
   }
   values.push_back(steps_per_second(simulation.step()));
+  if (with_stress_) {
+    values.insert(values.end(), totals.stress.begin(), totals.stress.end());
+  }
   writer_->write(simulation.step(), values);
 }
 

@@ -19,10 +19,17 @@ std::vector<Vector3> positions_of(const MovingPacking& moving) {
   return x;
 }
 
-/// Places the nodes, which were at x, and evaluates them in a cell that is larger by `factor` in length.
-double virial_pressure_when_scaled(MovingPacking& moving, const std::vector<Vector3>& x, double factor) {
+struct Virial6 {
+  double trace = 0.0;
+  std::array<double, 6> component{};
+  double volume = 0.0; ///< d^3
+};
+
+/// Places the nodes, which were at x, and evaluates them in a cell that is deformed by `deformation`.
+Virial6 virial_when_deformed(MovingPacking& moving, const std::vector<Vector3>& x, const Matrix3& deformation,
+                             Virial what) {
   const Box& box = moving.cell.box();
-  const Matrix3 map = factor * moving.cell.position_map();
+  const Matrix3 map = deformation * moving.cell.position_map();
   const Vector3 shift = box.origin() - map * box.origin();
   std::size_t next = 0;
   for (const int g : moving.layout.grains()) {
@@ -30,37 +37,60 @@ double virial_pressure_when_scaled(MovingPacking& moving, const std::vector<Vect
       moving.state.set_position(g, node, map * x[next++] + shift);
     }
   }
-  Box scaled_box = box;
-  scaled_box.set_h(factor * box.h());
+  Box deformed = box;
+  deformed.set_h(deformation * box.h());
   moving.forces.contact_list().invalidate();
-  moving.forces.evaluate(moving.state, scaled_box,
-                         {.virial = Virial::trace, .is_trial = true, .residual_rate = moving.cell.residual_rate()});
-  moving.forces.share_sums(Virial::trace);
-  double virial = 0.0;
+  moving.forces.evaluate(moving.state, deformed, {.virial = what, .is_trial = true, .residual_rate = moving.cell.residual_rate()});
+  moving.forces.share_sums(what);
+  Virial6 sum;
+  sum.volume = deformed.volume();
   for (const GrainSums& grain : moving.forces.grain_sums()) {
-    virial += grain.virial_trace;
+    sum.trace += grain.virial_trace;
+    for (int c = 0; c < 6; ++c) {
+      sum.component[c] += grain.virial[c];
+    }
   }
-  return virial / (3.0 * scaled_box.volume());
+  return sum;
 }
 
-} // namespace
+struct Probe {
+  Virial6 larger, smaller;
+};
 
-double affine_bulk_modulus(MovingPacking& moving) {
+/// Evaluates the packing at 1 + step and 1 - step times the displacement gradient, and leaves it as it was.
+Probe probe(MovingPacking& moving, const Matrix3& gradient, double step, Virial what) {
   const ScopedThreads threads(moving.options.threads);
   const LaneState before = moving.state;
   const std::vector<Vector3> x = positions_of(moving);
   const ForceField::Results results = moving.forces.results();
   const Walls walls = moving.forces.walls();
-  const double step = 1e-5;
-  const double looser = virial_pressure_when_scaled(moving, x, 1.0 + step);
-  const double tighter = virial_pressure_when_scaled(moving, x, 1.0 - step);
+  Probe probe;
+  probe.larger = virial_when_deformed(moving, x, Matrix3::Identity() + step * gradient, what);
+  probe.smaller = virial_when_deformed(moving, x, Matrix3::Identity() - step * gradient, what);
   // Nothing of the state has moved but these; the list of the next step is built from scratch and gives the same
   // forces.
   moving.state.take(before);
   moving.forces.set_results(results);
   moving.forces.walls() = walls;
   moving.forces.contact_list().invalidate();
-  return (tighter - looser) / (6.0 * step);
+  return probe;
+}
+
+constexpr double probe_strain = 1e-5;
+
+} // namespace
+
+double affine_bulk_modulus(MovingPacking& moving) {
+  const auto [looser, tighter] = probe(moving, Matrix3::Identity(), probe_strain, Virial::trace);
+  return (tighter.trace / (3.0 * tighter.volume) - looser.trace / (3.0 * looser.volume)) / (6.0 * probe_strain);
+}
+
+double affine_stiffness(MovingPacking& moving, int c) {
+  constexpr std::array<std::array<int, 2>, 6> place = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+  Matrix3 gradient = Matrix3::Zero();
+  gradient(place[c][0], place[c][1]) = 1.0;
+  const auto [larger, smaller] = probe(moving, gradient, probe_strain, Virial::full);
+  return (smaller.component[c] / smaller.volume - larger.component[c] / larger.volume) / (2.0 * probe_strain);
 }
 
 double sound_crossing(const MovingPacking& moving, double bulk_modulus) {

@@ -11,6 +11,9 @@ struct CellRates {
   double shear = 0.0; ///< d(xy)/dt over the current Ly, 1/tau
   Remap remap = Remap::positions;
   double dilation = 0.0; ///< d ln L / dt of all three axes, 1/tau; always acts on positions
+  /// Any velocity gradient beside these (upper triangular, 1/tau). Its diagonal acts on positions.
+  Matrix3 gradient = Matrix3::Zero();
+  double strain_rate = 0.0; ///< what the gradient adds to the strain that outputs count, 1/tau
 };
 
 /// The periodic cell and its motion. The box moves at the end of a step; the nodes follow with the next drift, by a map

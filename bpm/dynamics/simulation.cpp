@@ -89,7 +89,9 @@ struct Simulation::Impl {
     const std::vector<Observer*> wanting = interested(observers);
     const bool full = !wanting.empty() || driver->may_end(stepper);
     const bool look = (stepper.step() + 1) % alternation_interval == 0;
-    const Virial virial = full ? Virial::full : driver->needs_pressure() || look ? Virial::trace : Virial::none;
+    const Virial virial = full || driver->needs_stress()     ? Virial::full
+                          : driver->needs_pressure() || look ? Virial::trace
+                                                             : Virial::none;
     stepper.advance(virial);
     if (look) {
       stepper.ranks().collectively([&] { check_alternation(stepper.moving()); });

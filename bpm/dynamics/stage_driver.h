@@ -25,6 +25,8 @@ public:
   virtual void begin(Stepper& stepper) = 0;
   /// Does `update` read the pressure of every step?
   virtual bool needs_pressure() const = 0;
+  /// Does it read all components of the stress (stress_of) of every step?
+  virtual bool needs_stress() const { return false; }
   /// After the forces of a step: decides how the cell moves at its end, and looks whether the stage is over.
   virtual CellRates update(Stepper& stepper) = 0;
   virtual bool finished() const = 0;
@@ -40,6 +42,8 @@ public:
   virtual StageProgress progress(const Stepper& stepper) const = 0;
   /// What is to be said at the stage's end beside the means: how well it held what it was to hold. "" where nothing is.
   virtual std::string report() const { return ""; }
+  /// Did it hold something and miss its target? Known at its end.
+  virtual bool has_missed() const { return false; }
   /// All that the stage needs to continue bit for bit, field by field.
   virtual void archive(Archive& archive) = 0;
 };

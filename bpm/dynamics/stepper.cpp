@@ -145,10 +145,9 @@ void Stepper::sum_up() {
 }
 
 void Stepper::move_cell(const CellRates& rates) {
-  const Matrix3 dilation = rates.dilation * Matrix3::Identity();
-  const Matrix3 gradient = dilation + simple_shear(rates.shear);
-  moving_.cell.add_strain(rates.shear * moving_.options.dt);
-  deform_cell(gradient, rates.remap == Remap::positions ? gradient : dilation);
+  const Matrix3 gradient = rates.dilation * Matrix3::Identity() + simple_shear(rates.shear) + rates.gradient;
+  moving_.cell.add_strain((rates.shear + rates.strain_rate) * moving_.options.dt);
+  deform_cell(gradient, rates.remap == Remap::positions ? gradient : Matrix3(gradient.diagonal().asDiagonal()));
 }
 
 void Stepper::deform_cell(const Matrix3& gradient, const Matrix3& of_positions) {

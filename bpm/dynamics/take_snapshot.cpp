@@ -12,14 +12,20 @@ double least_pressure(Precision precision) {
   return precision == Precision::full ? 1e-12 : 1e-8;
 }
 
-Totals totals_of(const MovingPacking& moving) {
-  Totals totals;
+std::array<double, 6> stress_of(const MovingPacking& moving) {
+  std::array<double, 6> stress{};
   const double volume = moving.cell.evaluated_box().volume();
   for (const GrainSums& grain : moving.forces.grain_sums()) {
     for (int c = 0; c < 6; ++c) {
-      totals.stress[c] -= (grain.virial[c] + grain.kinetic[c]) / volume;
+      stress[c] -= (grain.virial[c] + grain.kinetic[c]) / volume;
     }
   }
+  return stress;
+}
+
+Totals totals_of(const MovingPacking& moving) {
+  Totals totals;
+  totals.stress = stress_of(moving);
   totals.pressure = moving.pressure;
   totals.least_pressure = least_pressure(moving.options.precision);
   totals.kinetic_energy = moving.kinetic_energy;

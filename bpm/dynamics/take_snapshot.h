@@ -8,6 +8,9 @@ namespace boba {
 /// Pressure that rounding of the forces can make up, k/d: what floats or doubles leave of bonds at rest.
 double least_pressure(Precision precision);
 
+/// Stress at the present step, as Totals::stress; needs an evaluation with Virial::full. The cost is a sum over grains.
+std::array<double, 6> stress_of(const MovingPacking& moving);
+
 /// Sums over the packing at the present step; needs an evaluation with Virial::full. Collective.
 Totals totals_of(const MovingPacking& moving);
 

@@ -47,6 +47,7 @@ struct SceneStage {
   std::string kind; ///< its type: "shear"
   std::string name; ///< its own, or ""
   std::shared_ptr<const StageEntry> entry;
+  bool is_strict = false; ///< a target that it misses ends the run
 
   /// "stage.2 shear", and its own name when it has one.
   std::string label() const;

@@ -159,6 +159,8 @@ std::vector<SceneSection> stage_sections() {
     sections.push_back(stage.section);
     sections.back().keys.push_back(
         text_key("name", "", "its name in `--set stage.NAME.key=value` and in the log; no other stage has it"));
+    sections.back().keys.push_back(boolean_key(
+        "strict", "false", "end the run with exit code 3 when the stage misses a pressure or a stress that it holds"));
   }
   return sections;
 }

@@ -51,7 +51,8 @@ std::vector<SceneStage> read_stages(const SceneTables& tables, const Scene& scen
     if (kind == nullptr) {
       throw std::logic_error(fmt::format("the stage \"{}\" has keys but is not registered", table.kind()));
     }
-    stages.push_back({static_cast<int>(i), table.kind(), read_name(table, names), kind->read(table)});
+    stages.push_back({static_cast<int>(i), table.kind(), read_name(table, names), kind->read(table),
+                      table.boolean("strict", false)});
     stages.back().entry->check(table, surroundings);
   }
   if (from_files && stages.empty()) {
@@ -67,7 +68,7 @@ StageContext stage_context(const Scene& scene, const Packing& packing, std::opti
 std::vector<PreparedStage> prepare_stages(const Scene& scene, const StageContext& context) {
   std::vector<PreparedStage> prepared;
   for (const SceneStage& stage : scene.stages) {
-    prepared.push_back({stage.index, stage.label(), stage.entry->make_driver(context)});
+    prepared.push_back({stage.index, stage.label(), stage.entry->make_driver(context), stage.is_strict});
   }
   return prepared;
 }

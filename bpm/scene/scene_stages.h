@@ -19,6 +19,7 @@ struct PreparedStage {
   int index = 0;     ///< as in SceneStage
   std::string label; ///< for the log
   std::unique_ptr<StageDriver> driver;
+  bool is_strict = false; ///< as in SceneStage
 };
 
 /// What is known of the packing, for StageEntry. \param modulus E / (2 - 2 nu^2), k/d

@@ -23,6 +23,7 @@ public:
   /// d ln L / dt of the cell after a step, 1/tau; 0 when no pressure is held. `share_done` of the stage: 0 .. 1.
   double dilation_rate(const Stepper& stepper, double share_done);
   const HeldPressureReport& report() const { return report_; }
+  bool has_missed() const { return is_held() && report_.has_steps() && report_.is_missed(); }
 
   void archive(Archive& archive) {
     archive.field("gain", gain_);

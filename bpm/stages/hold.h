@@ -29,6 +29,7 @@ public:
   void end(Stepper&) override {}
   StageProgress progress(const Stepper& stepper) const override;
   std::string report() const override { return pressure_.is_held() ? pressure_.report().text() : ""; }
+  bool has_missed() const override { return pressure_.has_missed(); }
   void archive(Archive& archive) override;
 
 private:

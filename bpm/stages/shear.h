@@ -8,7 +8,7 @@
 
 namespace boba {
 
-/// Simple shear in x with gradient y, at constant volume or at a held pressure.
+/// Simple shear, of itself in x with gradient y, at constant volume or at a held pressure.
 struct ShearStage {
   double rate = 0.0;   ///< 1/tau; negative shears backwards
   double strain = 0.0; ///< > 0, to be added by this stage
@@ -31,6 +31,7 @@ public:
   void end(Stepper&) override {}
   StageProgress progress(const Stepper& stepper) const override;
   std::string report() const override { return pressure_.is_held() ? pressure_.report().text() : ""; }
+  bool has_missed() const override { return pressure_.has_missed(); }
   void archive(Archive& archive) override;
 
 private:
@@ -55,9 +56,16 @@ public:
   const ShearStage& parameters() const { return parameters_; }
   const ScenePressure& pressure() const { return pressure_; }
 
+  bool shows_stress() const override { return !is_plain(); }
+
 private:
+  /// In xy and without a held normal stress: ShearDriver does it, anything else is a deformation of the cell.
+  bool is_plain() const { return plane_ == 3 && !holds_normal_stress_; }
+
   ShearStage parameters_;
   ScenePressure pressure_;
+  int plane_ = 3; ///< component of the cell
+  bool holds_normal_stress_ = false;
 };
 
 } // namespace boba

@@ -45,6 +45,8 @@ public:
   virtual bool holds_pressure() const = 0;
   /// Does it put up walls or clamps? They stay where they are for the stages that follow, and frames do not hold them.
   virtual bool has_ends() const = 0;
+  /// Does the run's table have all components of the stress? They are shown when one stage of the scene wants them.
+  virtual bool shows_stress() const { return false; }
   /// For `boba check`, before anything runs.
   virtual StageLength estimate(const StageContext& context) const = 0;
   /// \throws InputError when a pressure that is given relative to E / (2 - 2 nu^2) cannot be known.

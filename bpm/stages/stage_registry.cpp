@@ -2,7 +2,9 @@
 #include "bpm/stages/stage_registry.h"
 
 #include "bpm/stages/compress.h"
+#include "bpm/stages/deform_entry.h"
 #include "bpm/stages/hold.h"
+#include "bpm/stages/named_loadings.h"
 #include "bpm/stages/press.h"
 #include "bpm/stages/shear.h"
 
@@ -21,10 +23,9 @@ template <ReadableStage Entry> StageKind kind_of() {
 /// The stages that Boba has of itself: one line each.
 std::vector<StageKind>& registered_stages() {
   static std::vector<StageKind> kinds = {
-      kind_of<CompressEntry>(),
-      kind_of<HoldEntry>(),
-      kind_of<ShearEntry>(),
-      kind_of<PressEntry>(),
+      kind_of<CompressEntry>(),  kind_of<HoldEntry>(),      kind_of<ShearEntry>(),   kind_of<PressEntry>(),
+      kind_of<DeformEntry>(),    kind_of<UniaxialEntry>(),  kind_of<BiaxialEntry>(), kind_of<TriaxialEntry>(),
+      kind_of<OedometerEntry>(), kind_of<PureShearEntry>(),
   };
   return kinds;
 }

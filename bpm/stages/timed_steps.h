@@ -17,9 +17,9 @@ public:
   std::int64_t done() const { return steps_done_; }
   std::int64_t left() const { return n_steps_ - steps_done_; }
   bool finished() const { return steps_done_ >= n_steps_; }
-  /// 0 .. 1; 1 when there are no steps.
-  double share_done() const {
-    return n_steps_ > 0 ? static_cast<double>(steps_done_) / static_cast<double>(n_steps_) : 1.0;
+  /// 0 .. 1; 1 when there are no steps. \param more steps than those that are done
+  double share_done(int more = 0) const {
+    return n_steps_ > 0 ? static_cast<double>(steps_done_ + more) / static_cast<double>(n_steps_) : 1.0;
   }
 
   void archive(Archive& archive) {

@@ -8,8 +8,12 @@
 
 namespace boba::test {
 
+std::filesystem::path test_data(const std::string& name) {
+  return std::filesystem::path(BOBA_TEST_DATA) / name;
+}
+
 std::filesystem::path force_data(const std::string& name) {
-  return std::filesystem::path(BOBA_TEST_DATA) / "forces" / name;
+  return test_data("forces/" + name);
 }
 
 LammpsPacking fixture_packing(const std::string& name, const std::string& state, double alpha) {

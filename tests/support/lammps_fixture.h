@@ -10,6 +10,9 @@
 
 namespace boba::test {
 
+/// A file of tests/data.
+std::filesystem::path test_data(const std::string& name);
+
 /// A LAMMPS file of tests/data/forces.
 std::filesystem::path force_data(const std::string& name);
 

@@ -36,6 +36,19 @@ TEST(HeldPressureReport, WarnsOfATargetThatWasMissed) {
   EXPECT_EQ(again.text(), report.text());
 }
 
+TEST(HeldPressureReport, MeasuresATargetOfZeroByItsScale) {
+  HeldPressureReport report("stress xx", "sigma_xx");
+  for (const double stress : {0.002, -0.004}) {
+    report.add(stress, 0.0, 0.1, 1.0);
+  }
+  EXPECT_FALSE(report.is_missed()); // -0.001 is 1 % of 0.1
+  EXPECT_NE(report.text().find("stress xx held: sigma_xx -0.001 +- 0.003 k/d"), std::string::npos) << report.text();
+  for (int k = 0; k < 4; ++k) {
+    report.add(0.02, 0.0, 0.1, 1.0);
+  }
+  EXPECT_TRUE(report.is_missed());
+}
+
 TEST(HeldPressureReport, SaysNothingWithoutSteps) {
   EXPECT_EQ(HeldPressureReport().text(), "");
 }
