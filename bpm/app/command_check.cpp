@@ -6,6 +6,7 @@
 #include "bpm/io/printable.h"
 #include "bpm/packing/lane_layout.h"
 #include "bpm/packing/packing_numbers.h"
+#include "bpm/scene/continued_run.h"
 #include "bpm/scene/scene_packing.h"
 #include "bpm/scene/scene_size.h"
 #include "bpm/scene/scene_stages.h"
@@ -87,22 +88,21 @@ void print_stages(const Scene& scene, const StageContext& context, double node_s
 ExitCode check_quickly(const Scene& scene) {
   const SceneSize size = expected_size(scene);
   check_memory(scene);
-  fmt::print("{}: {}\nabout {:.0f} nodes, {:.0f} bytes a node, {:.1f} MB at most; {:.1f} GB are free\n",
-             scene.path.string(), printable(scene.title), size.nodes, bytes_per_node, size.bytes * 1e-6,
-             available_memory() * 1e-9);
+  fmt::print("{}: {}\nabout {:.0f} nodes, {:.1f} MB at most; {:.1f} GB are free\n", scene.path.string(),
+             printable(scene.title), size.nodes, size.bytes * 1e-6, available_memory() * 1e-9);
   return ExitCode::done;
 }
 
 ExitCode check(const CheckArguments& a) {
-  Scene scene = read_scene(a.scene, a.overrides);
+  const auto narrate = [](const std::string& text) { fmt::print("{}\n", printable(text)); };
+  Scene scene = read_scene_to_run(a.scene, a.overrides, narrate);
   scene.options.threads = a.threads.value_or(scene.options.threads);
   warn_of_threads(scene.options.threads);
   if (a.quick) {
     return check_quickly(scene);
   }
   const PoissonTable table = PoissonTable::installed();
-  const Packing packing =
-      make_start(scene, table, [](const std::string& text) { fmt::print("{}\n", printable(text)); });
+  const Packing packing = make_start(scene, table, narrate);
   const std::optional<double> modulus = effective_modulus(packing, scene.material, table);
   const StageContext context = stage_context(scene, packing, modulus);
   prepare_stages(scene, context); // says what would stop a run

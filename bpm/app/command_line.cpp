@@ -6,6 +6,7 @@
 #include "bpm/app/on_ranks.h"
 #include "bpm/app/standard_streams.h"
 #include "bpm/app/thread_waiting.h"
+#include "bpm/app/uncaught_errors.h"
 #include "bpm/app/version.h"
 #include "bpm/io/printable.h"
 
@@ -138,6 +139,7 @@ int run_command_line(int argc, char** argv) {
   // file is closed by its owner.
   H5dont_atexit();
   secure_standard_streams();
+  tell_uncaught_errors();
   shorten_thread_waiting(argv);
   try {
     for (const OtherProgram& other : other_programs) {
@@ -150,7 +152,7 @@ int run_command_line(int argc, char** argv) {
   } catch (const std::invalid_argument& error) {
     return report(error.what(), ExitCode::wrong_input);
   } catch (const std::bad_alloc&) {
-    return report("out of memory", ExitCode::failed);
+    return report(out_of_memory, ExitCode::failed);
   } catch (const std::exception& error) {
     return report(error.what(), ExitCode::failed);
   }

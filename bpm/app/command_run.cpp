@@ -11,6 +11,7 @@
 #include "bpm/io/printable.h"
 #include "bpm/parallel/message_passing.h"
 #include "bpm/parallel/share_packing.h"
+#include "bpm/scene/continued_run.h"
 #include "bpm/scene/scene_packing.h"
 
 #include <algorithm>
@@ -71,7 +72,17 @@ void check_inside(const Scene& scene) {
 
 /// Rank 0 makes the packing that the run starts from; the others read the scene alone.
 RunSetup prepare(const RunArguments& a, const Ranks& ranks) {
-  Scene scene = read_scene(a.scene, a.overrides);
+  const auto narrate = [&](const std::string& text) {
+    if (!ranks.is_root()) {
+      return;
+    }
+    if (text.starts_with("warning: ")) { // --quiet hides no warning
+      fmt::print(stderr, "boba: {}\n", printable(text));
+    } else if (!a.quiet) {
+      print_line(printable(text));
+    }
+  };
+  Scene scene = read_scene_to_run(a.scene, a.overrides, narrate);
   scene.options.threads = a.threads.value_or(scene.options.threads);
   scene.wall_time = a.wall_time ? a.wall_time : scene.wall_time;
   if (a.output.empty() && ranks.is_root()) {
@@ -85,11 +96,6 @@ RunSetup prepare(const RunArguments& a, const Ranks& ranks) {
     }
     check_free(folder, setup.scene, a.force);
     const PoissonTable table = PoissonTable::installed();
-    const auto narrate = [&a](const std::string& text) {
-      if (!a.quiet) {
-        print_line(printable(text));
-      }
-    };
     setup.packing = make_start(setup.scene, table, narrate);
     setup.modulus = effective_modulus(setup.packing, setup.scene.material, table);
     const bool automatic = setup.scene.automatic_dt;

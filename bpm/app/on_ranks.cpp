@@ -2,6 +2,7 @@
 #include "bpm/app/on_ranks.h"
 
 #include "bpm/app/standard_streams.h"
+#include "bpm/app/uncaught_errors.h"
 #include "bpm/io/printable.h"
 #include "bpm/parallel/message_passing.h"
 
@@ -46,7 +47,7 @@ ExitCode on_all_ranks(const std::function<ExitCode(const Ranks&)>& work) {
   } catch (const std::invalid_argument& error) {
     end_all(mpi, error.what(), ExitCode::wrong_input);
   } catch (const std::bad_alloc&) {
-    end_all(mpi, "out of memory", ExitCode::failed);
+    end_all(mpi, out_of_memory, ExitCode::failed);
   } catch (const std::exception& error) {
     end_all(mpi, error.what(), ExitCode::failed);
   }

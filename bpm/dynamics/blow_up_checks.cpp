@@ -23,10 +23,35 @@ double largest_allowed_speed(const MovingPacking& moving) {
   return 0.5 * moving.material.diameter / moving.options.dt;
 }
 
-void check_drift(const MovingPacking& moving, const std::vector<BlockMotion>& motion) {
+namespace {
+
+/// Are the nodes of the block's grains within the limit? Otherwise it is an idle lane that is beyond it.
+bool grains_are_within(const MovingPacking& moving, const Block& block, double limit) {
+  const Matrix3& streaming = moving.cell.streaming();
+  const Vector3 origin = moving.cell.box().origin();
+  for (const int grain : block.grain) {
+    for (int node = 0; grain >= 0 && node < block.n_nodes; ++node) {
+      const Vector3 own =
+          moving.state.velocity(grain, node) - streaming * (moving.state.position(grain, node) - origin);
+      if (!(own.squaredNorm() <= limit * limit)) { // also true for NaN
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+} // namespace
+
+void check_drift(MovingPacking& moving, const std::vector<BlockMotion>& motion) {
   const double limit = largest_allowed_speed(moving);
   for (std::size_t b = 0; b < motion.size(); ++b) {
     if (!std::isfinite(motion[b].checksum) || motion[b].largest_speed2 > limit * limit) {
+      const Block& block = moving.layout.blocks()[b];
+      if (grains_are_within(moving, block, limit)) {
+        moving.state.reset_idle_lanes(block, *moving.packing.templates[block.template_index]);
+        continue;
+      }
       throw BlowUp(describe_fast_node(moving.layout.blocks()[b], moving.state, moving.step + 1, moving.options.dt,
                                       moving.material));
     }

@@ -11,8 +11,8 @@ namespace boba {
 double largest_allowed_speed(const MovingPacking& moving);
 
 /// \throws BlowUp when a node of this rank's grains is faster than that, or has no finite velocity; `motion` is what
-/// the drift of each block saw.
-void check_drift(const MovingPacking& moving, const std::vector<BlockMotion>& motion);
+/// the drift of each block saw. Idle lanes that are so fast are put to rest instead: no grain is in them.
+void check_drift(MovingPacking& moving, const std::vector<BlockMotion>& motion);
 
 /// Centres fixed-point positions on their grains again. \throws BlowUp when a grain reaches too far. Collective.
 void recentre_grains(MovingPacking& moving);

@@ -7,6 +7,7 @@
 #include "bpm/dynamics/motion_archive.h"
 #include "bpm/dynamics/scoped_threads.h"
 #include "bpm/dynamics/share_state.h"
+#include "bpm/dynamics/sound_motion.h"
 #include "bpm/dynamics/stage_driver.h"
 #include "bpm/dynamics/stepper.h"
 #include "bpm/dynamics/take_snapshot.h"
@@ -272,6 +273,7 @@ void Simulation::restore(const SavedState& of_root) {
   const SavedState& state = ranks().is_distributed() ? of_all : of_root;
   Archive archive = Archive::reading_from(state);
   impl_->archive(archive);
+  check_motion(impl_->stepper.moving());
   impl_->totals.least_pressure = least_pressure(impl_->stepper.options().precision);
   impl_->stopped_stage.reset();
   const std::string of_stage = "simulation.stage.";

@@ -3,11 +3,46 @@
 #include "bpm/forces/contact_list.h"
 
 #include <algorithm>
-#include <iterator>
+#include <compare>
 #include <limits>
-#include <tuple>
+#include <vector>
 
 namespace boba {
+
+namespace {
+
+/// What tells a pair of grains from the others, in the order of the list.
+struct PairKey {
+  int a, b;
+  ImageVector image;
+  auto operator<=>(const PairKey&) const = default;
+};
+
+PairKey key_of(const ContactPair& pair) {
+  return {pair.a, pair.b, pair.image};
+}
+
+/// Makes the list one of the `wanted` pairs: those that are in it stay as they are, others come in new. Both are
+/// sorted. In place, since a pair is large and a packing of small grains has many.
+void keep_pairs(std::vector<ContactPair>& pairs, const std::vector<PairKey>& wanted) {
+  std::erase_if(
+      pairs, [&](const ContactPair& pair) { return !std::binary_search(wanted.begin(), wanted.end(), key_of(pair)); });
+  std::size_t old = pairs.size();
+  if (pairs.capacity() < wanted.size()) {
+    pairs.reserve(wanted.size() + (pairs.empty() ? 0 : wanted.size() / 16));
+  }
+  pairs.resize(wanted.size());
+  for (std::size_t place = wanted.size(); place > old; --place) { // what is below has its place already
+    const PairKey& key = wanted[place - 1];
+    if (old > 0 && key_of(pairs[old - 1]) == key) {
+      pairs[place - 1] = std::move(pairs[--old]);
+    } else {
+      pairs[place - 1] = ContactPair{key.a, key.b, key.image};
+    }
+  }
+}
+
+} // namespace
 
 void ContactList::find_neighbours(const Box& box) {
   const int n_grains = layout_.n_grains();
@@ -21,10 +56,13 @@ void ContactList::find_neighbours(const Box& box) {
   }
   share_bounds(bounds);
   const GrainNeighbours neighbours(std::move(bounds), box, reach_between() + neighbour_margin_);
-  std::vector<ContactPair> found;
+  std::vector<PairKey> found;
 #pragma omp parallel for schedule(dynamic, 8)
   for (const int g : layout_.grains()) {
-    std::vector<ContactPair> of_grain = {ContactPair{g, g, {}}};
+    std::vector<PairKey> of_grain;
+    if (layout_.n_nodes(g) > 1) {
+      of_grain.push_back({g, g, {}});
+    }
     for (const auto& [other, image] : neighbours.of(g)) {
       if (other > g || (other == g && image > ImageVector{})) {
         of_grain.push_back({g, other, image});
@@ -33,19 +71,13 @@ void ContactList::find_neighbours(const Box& box) {
       }
     }
 #pragma omp critical
-    std::move(of_grain.begin(), of_grain.end(), std::back_inserter(found));
+    found.insert(found.end(), of_grain.begin(), of_grain.end());
   }
-  const auto key = [](const ContactPair& pair) { return std::make_tuple(pair.a, pair.b, pair.image); };
-  std::sort(found.begin(), found.end(), [&](const ContactPair& x, const ContactPair& y) { return key(x) < key(y); });
-  for (auto old = pairs_.begin(); ContactPair & pair : found) { // both are sorted
-    while (old != pairs_.end() && key(*old) < key(pair)) {
-      ++old;
-    }
-    if (built_ && old != pairs_.end() && key(*old) == key(pair)) {
-      pair = std::move(*old++);
-    }
+  std::sort(found.begin(), found.end());
+  if (!built_) {
+    pairs_.clear();
   }
-  pairs_ = std::move(found);
+  keep_pairs(pairs_, found);
   sides_.assign(n_grains, {});
   for (int index = 0; index < static_cast<int>(pairs_.size()); ++index) {
     const ContactPair& pair = pairs_[index];

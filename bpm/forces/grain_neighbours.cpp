@@ -97,7 +97,11 @@ std::vector<NeighbourGrain> GrainNeighbours::of(int g) const {
         const double x = distance[0] + nb * h(0, 1) + nc * h(0, 2);
         const Interval a = images_within(x, h(0, 0), touching[0], periodic[0]);
         for (int na = a.first; na <= a.last; ++na) {
-          if (other != g || na != 0 || nb != 0 || nc != 0) {
+          const Vector3 between(x + na * h(0, 0), distance[1] + nb * h(1, 1) + nc * h(1, 2),
+                                distance[2] + nc * h(2, 2));
+          const Vector3 gap = (between.cwiseAbs() - (touching.array() - reach_).matrix()).cwiseMax(0.0);
+          const bool is_near = gap.squaredNorm() <= reach_ * reach_; // not so at the corners of the boxes
+          if (is_near && (other != g || na != 0 || nb != 0 || nc != 0)) {
             found.push_back({other, {na, nb, nc}});
           }
         }

@@ -21,7 +21,7 @@ struct NeighbourGrain {
   ImageVector image;
 };
 
-/// Finds the grains whose bounds come within a reach of each other's, images included.
+/// Finds the grains whose bounds come within a reach (a distance, d) of each other's, images included.
 ///
 /// Exact for any cell, also one smaller than a grain: the integer images are solved for axis by axis. Grains stand in
 /// bins of fractional coordinates, as wide as two grains and the reach, so that one is compared with those around it

@@ -95,6 +95,7 @@ Packing read_trajectory_packing(const std::filesystem::path& file, int frame, st
   packing.id = topology.id;
   packing.position = std::move(state.position);
   packing.velocity = std::move(state.velocity);
+  packing.strain = state.strain;
   for (std::size_t i = 0; i < packing.velocity.size(); ++i) { // a stage adds the profile of its own shear
     packing.velocity[i][0] -= state.streaming_rate * (packing.position[i][1] - packing.box.origin()[1]);
   }

@@ -11,9 +11,9 @@ namespace boba {
 /// A frame of a trajectory that Boba wrote, as a packing to start from.
 ///
 /// Bonds and r0 are the stored ones. Frame counts from 0, or from the end when negative. Nodes rest when the trajectory
-/// has no velocities. A template's arrangement is the stored undeformed one, or that of its first grain in the first
-/// frame: only r0 enters the forces. `alpha` (k d) replaces the stored coefficients. \throws InputError when the file
-/// is no such trajectory or lacks the frame.
+/// has no velocities. The strain is the frame's. A template's arrangement is the stored undeformed one, or that of its
+/// first grain in the first frame: only r0 enters the forces. `alpha` (k d) replaces the stored coefficients. \throws
+/// InputError when the file is no such trajectory or lacks the frame.
 Packing read_trajectory_packing(const std::filesystem::path& file, int frame, std::optional<double> alpha);
 
 } // namespace boba

@@ -34,6 +34,9 @@ struct MeasurePlan {
   NeighbourRule neighbours = NeighbourRule::solid_angle;
   Material material;
 
+  /// Grains of at least this many nodes have a hull.
+  static constexpr int fewest_nodes_of_hull = 4;
+
   bool has(MeasureKind kind) const { return kinds.contains(kind); }
   /// Order and motion look at neighbours by the grains' volumes.
   bool needs_hull_radii() const {

@@ -107,6 +107,19 @@ void LaneState::reset(const Packing& packing) {
   }
 }
 
+void LaneState::reset_idle_lanes(const Block& block, const GrainTemplate& undeformed) {
+  visit([&](auto& arrays) {
+    for (int lane = 0; lane < block.n_lanes; ++lane) {
+      for (std::int64_t node = 0; block.grain[lane] < 0 && node < block.n_nodes; ++node) {
+        const std::int64_t at = block.offset + 3 * node * block.n_lanes + lane;
+        set_triple(arrays.x, at, block.n_lanes, undeformed.position[node] / quantum_);
+        set_triple(arrays.v, at, block.n_lanes, Vector3::Zero());
+        set_triple(arrays.f, at, block.n_lanes, Vector3::Zero());
+      }
+    }
+  });
+}
+
 std::size_t LaneState::node_bytes() const {
   return visit(
       [](const auto& arrays) { return 3 * (sizeof(arrays.x[0]) + sizeof(arrays.v[0]) + sizeof(arrays.f[0])); });

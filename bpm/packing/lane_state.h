@@ -33,6 +33,9 @@ public:
 
   /// Begins anew with the layout as it is now: all grains undeformed at the origin, at rest.
   void reset(const Packing& packing);
+  /// Puts the undeformed template, at rest, into the idle lanes of a block. They belong to no grain, but are moved with
+  /// the others, and in a long shear a grain without neighbours may come apart.
+  void reset_idle_lanes(const Block& block, const GrainTemplate& undeformed);
   /// Bytes of a node's coordinates, velocity and force as they are stored; the quanta are the packing's, not the
   /// rank's.
   std::size_t node_bytes() const;

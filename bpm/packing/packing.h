@@ -33,6 +33,7 @@ struct Packing {
   std::vector<std::int64_t> id;  ///< per node, as files show it
   std::vector<Vector3> position; ///< d
   std::vector<Vector3> velocity; ///< d/tau
+  double strain = 0.0;           ///< shear strain until now, of the run that this one continues
 
   int n_grains() const { return static_cast<int>(grains.size()); }
   const GrainTemplate& template_of(int grain) const { return *templates[grains[grain].template_index]; }

@@ -46,6 +46,7 @@ void share_packing(Packing& packing, const Ranks& ranks) {
   ranks.broadcast(packing.id);
   ranks.broadcast(packing.position);
   ranks.broadcast(packing.velocity);
+  ranks.broadcast(packing.strain);
 }
 
 } // namespace boba

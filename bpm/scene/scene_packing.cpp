@@ -6,6 +6,7 @@
 #include "bpm/io/input_error.h"
 #include "bpm/scene/scene_size.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace boba {
@@ -48,6 +49,29 @@ std::vector<Grain> grains_of(const Scene& scene, const PoissonTable& table) {
   return grains;
 }
 
+/// What only the packing tells, of grains that come from files.
+void check_grains(const Scene& scene, const Packing& packing) {
+  if (packing.grains.empty()) {
+    throw InputError(fmt::format("{}: the packing has no grains", scene.path.string()));
+  }
+  const std::vector<int> nodes = packing.nodes_of_grains();
+  const int fewest = *std::min_element(nodes.begin(), nodes.end()),
+            most = *std::max_element(nodes.begin(), nodes.end());
+  for (std::size_t i = 0; i < scene.measures.size() && fewest < MeasurePlan::fewest_nodes_of_hull; ++i) {
+    if (scene.measures[i].plan.needs_hulls()) {
+      throw InputError(
+          fmt::format("{}: measure.{}.what looks at the hulls of grains, which need {} nodes and more; the "
+                      "packing has grains of {}",
+                      scene.path.string(), i, MeasurePlan::fewest_nodes_of_hull, fewest));
+    }
+  }
+  if (contact_law_of(scene.material).for_spheres && most > 1) {
+    throw InputError(
+        fmt::format("{}: material.contact = \"{}\" is for spheres of one node; the packing has grains of {}",
+                    scene.path.string(), scene.material.contact, most));
+  }
+}
+
 } // namespace
 
 double resolve_alpha(const AlphaChoice& choice, const Material& material, const PoissonTable& table) {
@@ -70,7 +94,9 @@ Packing make_start(const Scene& scene, const PoissonTable& table, const Narrator
   context.seed = scene.seed;
   context.alpha = [&](const AlphaChoice& choice) { return resolve_alpha(choice, scene.material, table); };
   context.narrate = narrate;
-  return scene.start->make(context);
+  Packing packing = scene.start->make(context);
+  check_grains(scene, packing);
+  return packing;
 }
 
 std::optional<PackingStep> settle_time_step(Scene& scene, const Packing& packing) {

@@ -6,6 +6,7 @@
 #include "bpm/scene/override_text.h"
 #include "bpm/scene/scene.h"
 #include "bpm/scene/scene_schema.h"
+#include "bpm/scene/scene_size.h"
 #include "bpm/scene/scene_stages.h"
 #include "bpm/stages/start_registry.h"
 #include "bpm/toml/scene_table.h"
@@ -83,6 +84,15 @@ MeasurePlan read_measure_plan(const SceneTable& table, const Scene& scene) {
   if (plan.kinds.empty()) {
     table.fail("what", "names no measure");
   }
+  plan.neighbours =
+      table.text("neighbours", "solid-angle") == "voronoi" ? NeighbourRule::voronoi : NeighbourRule::solid_angle;
+  for (const SceneTemplate& t : scene.templates) {
+    if (plan.needs_hulls() && expected_nodes(t.spec) < MeasurePlan::fewest_nodes_of_hull) {
+      table.fail("what", fmt::format("looks at the hulls of grains, which need {} nodes and more; template \"{}\" has "
+                                     "{:.0f}",
+                                     MeasurePlan::fewest_nodes_of_hull, t.name, expected_nodes(t.spec)));
+    }
+  }
   plan.packing_fraction.n_points = table.integer("points", plan.packing_fraction.n_points);
   plan.packing_fraction.target_error = table.maybe_real("target_error");
   plan.scattering.q_max = table.real("q_max", plan.scattering.q_max);
@@ -97,8 +107,6 @@ MeasurePlan read_measure_plan(const SceneTable& table, const Scene& scene) {
   if (relaxed) {
     plan.rest = table.real("rest_time", MeasurePlan::default_rest);
   }
-  plan.neighbours =
-      table.text("neighbours", "solid-angle") == "voronoi" ? NeighbourRule::voronoi : NeighbourRule::solid_angle;
   return plan;
 }
 
@@ -151,7 +159,11 @@ SceneTemplate read_template(const SceneTable& table) {
   try {
     validate(spec);
   } catch (const std::invalid_argument& error) {
-    table.fail(table.has("nodes") ? "nodes" : "name", fmt::format("the template cannot be made: {}", error.what()));
+    const char* key = table.has("nodes")    ? "nodes"
+                      : table.has("radius") ? "radius"
+                      : table.has("size")   ? "size"
+                                            : "name";
+    table.fail(key, fmt::format("the template cannot be made: {}", error.what()));
   }
   return result;
 }
@@ -195,7 +207,8 @@ void read_contact_law(const SceneTable& table, Material& material) {
 
 /// Hertz's law is for two whole spheres, not for nodes of a network.
 void check_contact_law(const SceneTables& tables, const Scene& scene) {
-  if (!contact_law_of(scene.material).for_spheres) {
+  // With files make_start looks at the grains.
+  if (!contact_law_of(scene.material).for_spheres || tables.present.at("start")) {
     return;
   }
   const bool spheres =
@@ -321,8 +334,8 @@ Scene read_tree(const std::string& text, const std::filesystem::path& path, cons
     scene.material.contact_diameter = *diameter; // absent where the scene says nothing: one law for all contacts
   }
   read_contact_law(material, scene.material);
-  read_measures(tables, scene);
   read_templates(tables, scene);
+  read_measures(tables, scene);
   check_contact_law(tables, scene);
   read_species(tables, scene);
   check_rests(scene);

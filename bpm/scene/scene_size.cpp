@@ -39,10 +39,14 @@ SceneSize expected_size(const Scene& scene) {
   for (const SceneTemplate& t : scene.templates) {
     size.template_nodes += expected_nodes(t.spec);
   }
+  double of_grains = 0.0;
   for (const SceneSpecies& species : scene.species) {
-    size.nodes += static_cast<double>(species.count) * expected_nodes(scene.templates[species.template_index].spec);
+    const double nodes = expected_nodes(scene.templates[species.template_index].spec);
+    const auto count = static_cast<double>(species.count);
+    size.nodes += count * nodes;
+    of_grains += count * (nodes == 1.0 ? bytes_per_single_node : bytes_per_grain);
   }
-  size.bytes = size.nodes * bytes_per_node + size.template_nodes * bytes_per_template_node;
+  size.bytes = of_grains + size.nodes * bytes_per_node + size.template_nodes * bytes_per_template_node;
   return size;
 }
 

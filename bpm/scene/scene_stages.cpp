@@ -6,6 +6,7 @@
 #include "bpm/stages/start_registry.h"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <set>
 
@@ -66,8 +67,15 @@ StageContext stage_context(const Scene& scene, const Packing& packing, std::opti
 }
 
 std::vector<PreparedStage> prepare_stages(const Scene& scene, const StageContext& context) {
+  const std::array<bool, 3> periodic = context.packing.box.periodic();
+  const bool is_open = !std::ranges::all_of(periodic, [](bool along) { return along; });
   std::vector<PreparedStage> prepared;
   for (const SceneStage& stage : scene.stages) {
+    if (is_open && stage.entry->moves_cell()) { // a packing from files: no key of the scene tells
+      throw InputError(fmt::format("{}: {}: moves the cell, which must be periodic along x, y and z for that; the cell "
+                                   "of the packing that [start] reads is open",
+                                   scene.path.string(), stage.label()));
+    }
     prepared.push_back({stage.index, stage.label(), stage.entry->make_driver(context), stage.is_strict});
   }
   return prepared;

@@ -51,6 +51,7 @@ CellRates CompressDriver::update(Stepper& stepper) {
         "a smaller rate, a larger max_time or wider tolerances help",
         stage_.max_time, stepper.pressure(), stage_.barostat.pressure, stepper.kinetic_energy()));
   }
+  const bool may_end_here = phase_ == Phase::settle; // as may_end said: not in the step that ends the ramp
   if (phase_ == Phase::ramp && halfway_.time < 0.0 && stepper.pressure() >= 0.5 * stage_.barostat.pressure) {
     halfway_ = {stepper.time(), stepper.pressure()};
   }
@@ -62,7 +63,7 @@ CellRates CompressDriver::update(Stepper& stepper) {
   if (phase_ == Phase::ramp) {
     return {.dilation = -stage_.rate};
   }
-  if (has_settled(stepper)) {
+  if (may_end_here && has_settled(stepper)) {
     phase_ = Phase::settled;
     return {};
   }

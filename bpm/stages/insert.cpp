@@ -4,6 +4,7 @@
 #include "bpm/toml/schema.h"
 
 #include <fmt/format.h>
+#include <new>
 #include <stdexcept>
 
 namespace boba {
@@ -15,7 +16,7 @@ SceneSection InsertStart::section() {
       true,
       "Places all grains at random, without overlap and at random angles, in a cubic periodic cell, or on the "
       "sites of a crystal. First stage only.",
-      {real_key("packing_fraction", "", 1e-9, 0.74, "0.4",
+      {real_key("packing_fraction", "", 1e-9, 0.74, "0.4; at random, or the next lower in steps of 5 % that works",
                 "sum of the grains' reference volumes over the cell's volume"),
        choice_key("arrangement", arrangement_names(), "\"random\"",
                   "where the grains are placed: fcc takes 4 n^3 of them, bcc 2 n^3, sc n^3; hcp numbers that make a "
@@ -24,8 +25,8 @@ SceneSection InsertStart::section() {
 }
 
 InsertStart::InsertStart(const SceneTable& table, const StartFiles&)
-    : packing_fraction_(table.real("packing_fraction", 0.4)), rotate_(table.boolean("rotate", true)),
-      arrangement_(arrangement_named(table.text("arrangement", "random"))) {}
+    : packing_fraction_(table.real("packing_fraction", 0.4)), may_lower_(!table.has("packing_fraction")),
+      rotate_(table.boolean("rotate", true)), arrangement_(arrangement_named(table.text("arrangement", "random"))) {}
 
 void InsertStart::check(const SceneTable& table, const SceneGrains& grains) const {
   for (const SceneTemplate& t : grains.templates) {
@@ -46,6 +47,30 @@ void InsertStart::check(const SceneTable& table, const SceneGrains& grains) cons
   }
 }
 
+namespace {
+
+/// Places the grains; `may_lower` steps down by 5 % where random placement does not reach the fraction (the spheres
+/// around cut grains are larger than what they enclose).
+Packing insert_where_possible(Insertion insertion, bool may_lower, const Narrator& narrate) {
+  constexpr double step = 0.95, lowest = 0.1;
+  while (true) {
+    try {
+      return insert_at_random(insertion);
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception&) { // the spheres fill too much, or do not come to rest
+      if (!may_lower || insertion.packing_fraction < lowest) {
+        throw;
+      }
+    }
+    insertion.packing_fraction *= step;
+    narrate(
+        fmt::format("too dense to be placed at random; trying packing_fraction = {:.4g}", insertion.packing_fraction));
+  }
+}
+
+} // namespace
+
 Packing InsertStart::make(const StartContext& context) const {
   const bool at_random = arrangement_ == Arrangement::random;
   context.narrate(fmt::format("placing {} grains {}", context.grains.size(),
@@ -57,7 +82,8 @@ Packing InsertStart::make(const StartContext& context) const {
   insertion.rotate = rotate_;
   insertion.seed = context.seed;
   insertion.diameter = between_grains(context.material).diameter;
-  return at_random ? insert_at_random(insertion) : insert_on_lattice(insertion, arrangement_);
+  return at_random ? insert_where_possible(std::move(insertion), may_lower_, context.narrate)
+                   : insert_on_lattice(insertion, arrangement_);
 }
 
 } // namespace boba

@@ -20,6 +20,7 @@ public:
 
 private:
   double packing_fraction_; ///< sum of reference volumes over cell volume
+  bool may_lower_;          ///< the scene leaves it open
   bool rotate_;
   Arrangement arrangement_;
 };

@@ -23,10 +23,9 @@ std::vector<SceneKey> alpha_keys(bool is_needed) {
   SceneKey alpha = above_key("alpha", "k d", -1.1, 100.0, "",
                              "many-body coefficient" + note + "; at about -1.1 the network loses its rigidity");
   SceneKey poisson =
-      real_key("poisson", "", -1.0, 0.5, "",
-               "Poisson's ratio; alpha follows by monotone interpolation in the installed table, without "
-               "extrapolation");
-  poisson.above_lowest = true;
+      real_key("poisson", "", -0.8, 0.44, "",
+               "Poisson's ratio; alpha follows by monotone interpolation in the installed table, which reaches no "
+               "further; give alpha beyond");
   return {alpha, poisson};
 }
 

@@ -20,6 +20,7 @@ private:
   std::filesystem::path file_;
   int frame_;
   AlphaChoice material_;
+  std::optional<double> strain_; ///< instead of the frame's
   Breaking breaking_;
 };
 

@@ -37,9 +37,10 @@ TEST_P(OnRanks, TheSameBits) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, OnRanks,
                          ::testing::Values(OnRanksCase{"shear", {2, 3, 4, 7}}, OnRanksCase{"mixed", {2, 7}},
-                                           OnRanksCase{"velocities", {3}}, OnRanksCase{"compress", {2}},
-                                           OnRanksCase{"walls", {3}}, OnRanksCase{"clamps", {2}},
-                                           OnRanksCase{"migrating", {2, 3, 4, 7}}, OnRanksCase{"breaking", {2, 3, 7}},
+                                           OnRanksCase{"stops", {2}}, OnRanksCase{"velocities", {3}},
+                                           OnRanksCase{"compress", {2}}, OnRanksCase{"walls", {3}},
+                                           OnRanksCase{"clamps", {2}}, OnRanksCase{"migrating", {2, 3, 4, 7}},
+                                           OnRanksCase{"breaking", {2, 3, 7}},
                                            OnRanksCase{"dealt", {2, 3, 4, 7}}, OnRanksCase{"scattering", {2, 3, 4, 7}}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 

@@ -147,6 +147,34 @@ void run_case(const std::string& name, const Ranks& ranks, Bits& bits) {
   }
 }
 
+/// Mixed precision, stopped after each of 130 steps in a row and continued by a new simulation; the end must be that of
+/// a run in one go.
+void run_with_stops(const Ranks& ranks, Bits& bits) {
+  const auto simulation = [&](Case& c) { return Simulation(std::move(c.packing), {}, c.options); };
+  SavedState saved;
+  constexpr std::int64_t first = 25, last = 155;
+  for (std::int64_t stop = first; stop <= last; ++stop) {
+    Case c = case_of("mixed", ranks);
+    Simulation part = simulation(c);
+    if (stop > first) {
+      part.restore(saved);
+    }
+    part.run(0, *c.stages[0], {}, [&] { return part.step() == stop; });
+    saved = part.save();
+  }
+  Case in_one_go = case_of("mixed", ranks), in_parts = case_of("mixed", ranks);
+  Simulation whole = simulation(in_one_go), rest = simulation(in_parts);
+  whole.run(0, *in_one_go.stages[0], {});
+  rest.restore(saved);
+  rest.run(0, *in_parts.stages[0], {});
+  const Snapshot a = whole.snapshot(all_parts), b = rest.snapshot(all_parts);
+  if (ranks.is_root() && (a.position != b.position || a.velocity != b.velocity || a.force != b.force)) {
+    throw std::runtime_error("a run stopped at every step ends elsewhere");
+  }
+  bits.add("step", static_cast<double>(rest.step()));
+  bits.add(b);
+}
+
 /// The same with bonds that break, but for some grains.
 Packing twenty_breakable_grains() {
   Packing packing = twenty_grains();
@@ -271,6 +299,8 @@ int work(int argc, char** argv, const Ranks& ranks) {
     run_migrating(twenty_grains(), ranks, bits);
   } else if (name == "breaking") {
     run_migrating(twenty_breakable_grains(), ranks, bits);
+  } else if (name == "stops") {
+    run_with_stops(ranks, bits);
   } else if (name == "blow_up") {
     run_blow_up(ranks);
   } else if (name == "dealt") {

@@ -15,9 +15,6 @@ namespace boba {
 
 namespace {
 
-/// Grains of at least this many nodes have a hull.
-constexpr int fewest_nodes_of_hull = 4;
-
 void check_between(const char* name, double value, double lowest, double highest, bool is_open) {
   const bool is_inside = is_open ? value > lowest && value < highest : value >= lowest && value <= highest;
   if (!is_inside || !std::isfinite(value)) {
@@ -126,12 +123,12 @@ void check_measure_frames(const MeasureRunOptions& options, const TrajectoryRead
   }
   const std::vector<std::int64_t>& first = reader.topology().first_node;
   for (std::size_t g = 0; g + 1 < first.size() && options.plan.needs_hulls(); ++g) {
-    if (first[g + 1] - first[g] < fewest_nodes_of_hull) {
+    if (first[g + 1] - first[g] < MeasurePlan::fewest_nodes_of_hull) {
       throw InputError(
           fmt::format("measure: grain {} of {} has {} node{}: shape, packing-fraction and Voronoi neighbours "
                       "look at hulls, which need {}; --what names other measures",
                       reader.topology().molecule[g], file, first[g + 1] - first[g],
-                      first[g + 1] - first[g] == 1 ? "" : "s", fewest_nodes_of_hull));
+                      first[g + 1] - first[g] == 1 ? "" : "s", MeasurePlan::fewest_nodes_of_hull));
     }
   }
 }

@@ -10,7 +10,7 @@
 #include "bpm/io/trajectory_packing.h"
 #include "bpm/parallel/message_passing.h"
 #include "bpm/parallel/usable_cores.h"
-#include "bpm/scene/scene.h"
+#include "bpm/scene/continued_run.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,6 @@
 #include <limits>
 #include <memory>
 #include <omp.h>
-#include <sstream>
 #include <utility>
 
 namespace boba {
@@ -57,25 +56,6 @@ private:
   std::optional<std::int64_t> only_;
   double last_strain_ = std::numeric_limits<double>::infinity(); ///< none yet: any frame is far from it
 };
-
-/// The scene that a trajectory came from; nothing when it names none that can be read.
-std::optional<Scene> scene_of(const TrajectoryOrigin& origin, const std::filesystem::path& path) {
-  std::vector<std::string> overrides;
-  const std::string mark = "# --set ";
-  std::istringstream lines(origin.scene);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with(mark)) {
-      overrides.push_back(line.substr(mark.size()));
-    } else if (!line.empty()) {
-      overrides.clear(); // comments of the same form before that came with the scene and mean nothing
-    }
-  }
-  try {
-    return read_stored_scene(origin.scene, path, overrides);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
-}
 
 /// What evaluates the forces again, or the reason why it cannot.
 std::pair<std::shared_ptr<FrameStress>, std::string>
@@ -115,7 +95,7 @@ std::unique_ptr<MeasureTables> open_tables(const MeasureRunOptions& options, con
   const UndeformedGrains undeformed = undeformed_grains(reader.topology(), reader.snapshot(0));
   result.undeformed_known =
       std::none_of(undeformed.nodes.begin(), undeformed.nodes.end(), [](const auto& nodes) { return nodes.empty(); });
-  const std::optional<Scene> scene = scene_of(reader.origin(), trajectory_of(options.run));
+  const std::optional<Scene> scene = scene_of_trajectory(reader.origin(), trajectory_of(options.run));
   MeasurePlan plan = options.plan;
   plan.material = scene ? scene->material : plan.material;
   const FileMode mode = options.force ? FileMode::overwrite : FileMode::create;

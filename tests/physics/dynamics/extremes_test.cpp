@@ -128,6 +128,39 @@ TEST(Extremes, FlipsEveryFewSteps) {
   EXPECT_LT(largest_stretch(stepper.moving()).ratio, 3.0);
 }
 
+/// Lanes without a grain are moved with the others, and what is in them comes apart sooner or later: no run ends of
+/// that.
+TEST(Extremes, IdleLanesEndNoRun) {
+  for (const Precision precision : {Precision::full, Precision::mixed}) {
+    Stepper stepper(small_packing({.box = Box(Vector3::Zero(), Vector3::Constant(12.0)), .n_grains = 3}), {},
+                    {.precision = precision});
+    Stepper undisturbed(small_packing({.box = Box(Vector3::Zero(), Vector3::Constant(12.0)), .n_grains = 3}), {},
+                        {.precision = precision});
+    const MovingPacking& moving = stepper.moving();
+    const Block& block = moving.layout.blocks().front();
+    ASSERT_GT(block.n_lanes, 3);
+    stepper.start();
+    undisturbed.start();
+    for (int step = 0; step < 60; ++step) {
+      if (step % 20 == 10) { // faster than any node may be, then not a number
+        const double speed = step == 10 ? 1e4 : std::nan("");
+        stepper.moving().state.visit([&](auto& arrays) {
+          arrays.v[block.offset + block.n_lanes - 1] =
+              static_cast<typename std::remove_reference_t<decltype(arrays)>::Real>(speed);
+        });
+      }
+      for (Stepper* of : {&stepper, &undisturbed}) {
+        of->advance(step + 1 < 60 ? Virial::trace : Virial::full);
+        of->move_cell({.shear = 1e-2});
+      }
+    }
+    const Snapshot a = take_snapshot(stepper.moving(), {.velocity = true}),
+                   b = take_snapshot(undisturbed.moving(), {.velocity = true});
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.velocity, b.velocity);
+  }
+}
+
 /// Close to the limit at -1.00 short bonds collapse and their ends turn round at every step; that stays with a few
 /// nodes.
 TEST(Extremes, NextToTheLimitOfRigidity) {

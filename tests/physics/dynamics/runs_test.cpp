@@ -8,6 +8,7 @@
 #include "bpm/stages/press.h"
 #include "bpm/stages/shear.h"
 #include "tests/physics/dynamics/nine_grains.h"
+#include "tests/support/plain_forces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -127,6 +128,34 @@ TEST(Runs, ContinueBitForBitFromAnyStep) {
   }
 }
 
+// Stopped after each of 130 steps in a row: the cell flips among them, and the steps are there at which momentum is
+// mended (64) and much else is looked at (50).
+TEST(Runs, StopAtEveryStepInMixedPrecision) {
+  for (const Remap remap : {Remap::positions, Remap::velocities}) {
+    const Snapshot whole = sheared(1, 1000000, remap, Precision::mixed);
+    constexpr std::int64_t first = 25, last = 155;
+    SavedState saved;
+    double xy = tilted.xy();
+    int flips = 0;
+    for (std::int64_t stop = first; stop <= last; ++stop) {
+      Simulation part(nine_grains(), {}, {.threads = 1 + static_cast<int>(stop % 2), .precision = Precision::mixed});
+      if (stop > first) {
+        part.restore(saved);
+      }
+      ASSERT_EQ(part.run(0, ShearDriver(shear_stage(remap)), {}, [&] { return part.step() == stop; }),
+                RunOutcome::stopped);
+      saved = part.save();
+      flips += part.box().xy() < xy - 1.0 ? 1 : 0;
+      xy = part.box().xy();
+    }
+    EXPECT_GE(flips, 1);
+    Simulation rest(nine_grains(), {}, {.threads = 2, .precision = Precision::mixed});
+    rest.restore(saved);
+    rest.run(0, ShearDriver(shear_stage(remap)), {});
+    expect_same_bits(whole, rest.snapshot(all_parts));
+  }
+}
+
 // The same lattice in other cell vectors: a flip must change nothing. The barostat is on, so that the pressure is in
 // the loop.
 TEST(Runs, FlipChangesNothing) {
@@ -181,6 +210,44 @@ TEST(Runs, FlipLeavesForcesAndPositionsAlone) {
   }
 }
 
+// Right at the limit of a flip, a rounding more and less; in a cell as thin as it may be, too. Forces are those of all
+// pairs and images in long double, and the run that follows does not know on which side it began.
+TEST(Runs, TiltsAtTheLimitOfAFlip) {
+  for (const Vector3& lengths : {Vector3(12.0, 11.0, 13.0), Vector3(30.0, 6.5, 6.2), Vector3(6.4, 30.0, 6.1)}) {
+    for (const double sign : {1.0, -1.0}) {
+      std::vector<Snapshot> ends;
+      for (const double share : {1.0 - 1e-15, 1.0, 1.0 + 1e-15}) {
+        const Vector3 tilts(sign * 0.5 * lengths[0] * share, -0.3 * lengths[0], 0.4 * lengths[1]);
+        const Box box(Vector3(0.3, -1.0, 2.0), lengths, tilts);
+        Packing packing =
+            small_packing({.box = Box(box.origin(), lengths, {sign * 0.5 * lengths[0], tilts[1], tilts[2]}),
+                           .n_grains = 3,
+                           .radius = 2.0,
+                           .least_distance = 3.5});
+        packing.box = box;
+        Stepper stepper(packing, {}, {});
+        stepper.evaluate_only();
+        const Snapshot start = take_snapshot(stepper.moving(), all_parts);
+        const PlainForces plain = plain_forces(packing, {}, 3);
+        for (std::size_t i = 0; i < plain.force.size(); ++i) {
+          ASSERT_LT((start.force[i] - plain.force[i]).norm(), 1e-10) << "tilt " << tilts[0] << ", node " << i;
+        }
+        Stepper moving(packing, {}, {});
+        moving.start();
+        for (int step = 0; step < 100; ++step) {
+          moving.advance(step + 1 < 100 ? Virial::trace : Virial::full);
+          moving.move_cell({.shear = sign * 1e-3});
+        }
+        ends.push_back(take_snapshot(moving.moving(), all_parts));
+      }
+      for (std::size_t i = 0; i < ends[0].position.size(); ++i) {
+        ASSERT_LT((ends[0].position[i] - ends[1].position[i]).norm(), 1e-8);
+        ASSERT_LT((ends[2].position[i] - ends[1].position[i]).norm(), 1e-8);
+      }
+    }
+  }
+}
+
 TEST(Runs, CompressSettlesAtItsPressure) {
   Simulation simulation(
       small_packing({.box = Box({0, 0, 0}, {13, 13, 13}), .n_grains = 9, .jitter = 0.0, .speed = 0.0}), {},
@@ -196,6 +263,18 @@ TEST(Runs, CompressSettlesAtItsPressure) {
 }
 
 // A grain on a wall is half of two mirror-image grains in contact, while no node touches a neighbour's image.
+// Whenever the ramp ends in a step at which settling is looked at, too: the totals of the end are those of its step.
+TEST(Runs, CompressEndsWhereItSaidItMight) {
+  for (int k = 0; k < 40; ++k) {
+    CompressStage stage{.barostat = {.pressure = 0.2, .gain = 0.05}, .rate = 4e-3 * (1.0 + 0.01 * k)};
+    stage.pressure_tolerance = 0.9;
+    stage.kinetic_tolerance = 1e3;
+    Simulation simulation(nine_grains(), {}, {});
+    simulation.run(0, CompressDriver(stage), {});
+    EXPECT_NO_THROW(simulation.snapshot(all_parts)) << k;
+  }
+}
+
 TEST(Runs, WallIsTheMirrorImage) {
   auto ball = small_ball(2.5, 3);
   auto mirrored = std::make_shared<GrainTemplate>(*ball);

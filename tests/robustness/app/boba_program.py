@@ -72,7 +72,8 @@ class ProgramTest(unittest.TestCase):
         how.setdefault("stdout", subprocess.PIPE)
         how.setdefault("stderr", subprocess.PIPE)
         how.setdefault("env", self.environment)
-        return subprocess.run([PROGRAM, *map(str, words)], cwd=self.folder, text=True, timeout=120, **how)
+        how.setdefault("timeout", 120)
+        return subprocess.run([PROGRAM, *map(str, words)], cwd=self.folder, text=True, **how)
 
     def start(self, *words, **how):
         """Starts and does not wait; it is ended with the test."""

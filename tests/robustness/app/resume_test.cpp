@@ -241,6 +241,18 @@ TEST(Resume, WrongNumbersUnderARightChecksumAreRefused) {
     expect_refused("a node at 1e300", [&](SavedState& d) { reals(d, "packing.position")[4] = 1e300; });
     expect_refused("r0", [&](SavedState& d) { reals(d, "packing.templates.0.bond_length")[7] *= 1.05; });
     expect_refused("negative r0", [&](SavedState& d) { reals(d, "packing.templates.0.bond_length")[7] = -1.0; });
+    if (std::string(precision) == "double") {
+      expect_refused("a node far away", [&](SavedState& d) { reals(d, "simulation.position")[4] = 1e300; });
+      expect_refused("a node off its bonds", [&](SavedState& d) { reals(d, "simulation.position")[4] += 40.0; });
+    } else {
+      expect_refused("an origin", [&](SavedState& d) { reals(d, "simulation.origin")[1] = 1e300; });
+      expect_refused("a coordinate", [&](SavedState& d) {
+        std::get<SavedValue::Integers>(d.at("simulation.position").values)[4] = 1 << 30;
+      });
+    }
+    expect_refused("a velocity", [&](SavedState& d) { reals(d, "simulation.velocity")[5] = std::nan(""); });
+    expect_refused("a flat cell", [&](SavedState& d) { reals(d, "simulation.cell.h")[4] = 0.0; });
+    expect_refused("a strain", [&](SavedState& d) { reals(d, "simulation.cell.strain")[0] = std::nan(""); });
     expect_refused(
         "corner", [&](SavedState& d) { reals(d, "packing.cell.origin")[1] = std::numeric_limits<double>::infinity(); });
   }

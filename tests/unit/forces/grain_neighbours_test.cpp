@@ -22,7 +22,7 @@ std::vector<Bounds> random_bounds(const Box& box, int n, double largest, std::mt
 }
 
 bool within(const Bounds& a, const Bounds& b, double reach) {
-  return ((b.low - a.high).array() <= reach).all() && ((a.low - b.high).array() <= reach).all();
+  return (b.low - a.high).cwiseMax(a.low - b.high).cwiseMax(Vector3::Zero()).norm() <= reach;
 }
 
 void expect_all_found(const Box& box, int n, double largest, double reach) {

@@ -171,7 +171,7 @@ TEST(SceneReader, NamesFileLineKeyValueAndWhatIsAllowed) {
       {"alpha = 2.0", "alpha = -3", {"species.0.alpha", "above -1.1"}},
       {"alpha = 2.0", "alpha = 2.0\npoisson = 0", {"species.0.poisson", "one of them"}},
       {"alpha = 2.0", "", {"species.0.alpha", "is missing"}},
-      {"poisson = -0.25", "poisson = 0.5001", {"species.1.poisson", "at most 0.5"}},
+      {"poisson = -0.25", "poisson = 0.4401", {"species.1.poisson", "to 0.44"}},
       {"type = \"insert\"", "type = \"inset\"", {"stage.0.type", "Did you mean \"insert\"?"}},
       {"type = \"insert\"\npacking_fraction = 0.3", "type = \"hold\"\ntime = 3.0", {"\"insert\" or \"specimen\""}},
       {"packing_fraction = 0.3", "packing_fraction = 0.9", {"stage.0.packing_fraction", "from 1e-09 to 0.74"}},
