@@ -32,5 +32,7 @@ CommandBody add_measure_command(CLI::App& app);
 CommandBody add_plot_command(CLI::App& app);
 CommandBody add_report_command(CLI::App& app);
 CommandBody add_watch_command(CLI::App& app);
+CommandBody add_picture_command(CLI::App& app);
+CommandBody add_units_command(CLI::App& app);
 
 } // namespace boba

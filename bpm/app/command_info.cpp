@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/command.h"
+#include "bpm/app/command_description.h"
 #include "bpm/app/version.h"
 #include "bpm/forces/kernels/kernels.h"
 #include "bpm/grain/template_cache.h"
@@ -27,14 +28,26 @@ ExitCode print_info() {
 } // namespace
 
 CommandBody add_info_command(CLI::App& app) {
-  auto reference = std::make_shared<bool>(false);
-  app.add_flag("--scene-reference", *reference, "print docs/scene.md: every table and key of a scene");
-  return [reference] {
-    if (*reference) {
+  struct Wanted {
+    bool reference = false, manual = false;
+    std::string shell;
+  };
+  auto wanted = std::make_shared<Wanted>();
+  app.add_flag("--scene-reference", wanted->reference, "print docs/scene.md: every table and key of a scene");
+  app.add_flag("--man", wanted->manual, "print the manual page");
+  app.add_option("--completion", wanted->shell, "print the completion of commands and options for bash, zsh or fish")
+      ->type_name("SHELL");
+  return [wanted, program = app.get_parent()] {
+    if (wanted->reference) {
       fmt::print("{}", scene_reference());
-      return ExitCode::done;
+    } else if (wanted->manual) {
+      fmt::print("{}", manual_page(*program, version()));
+    } else if (!wanted->shell.empty()) {
+      fmt::print("{}", shell_completion(*program, wanted->shell));
+    } else {
+      return print_info();
     }
-    return print_info();
+    return ExitCode::done;
   };
 }
 

@@ -27,9 +27,11 @@ const std::array commands = {
     Command{"check", "say what a scene would run, without running it", add_check_command},
     Command{"forces", "forces and pressure tensor of a LAMMPS data file of bonded grains", add_forces_command},
     Command{"measure", "measure the stored frames of a run", add_measure_command},
-    Command{"plot", "panels and pictures of runs", add_plot_command},
+    Command{"plot", "curves of one or several runs, as PNG, PDF or SVG", add_plot_command},
+    Command{"picture", "the grains of a frame, coloured by what was measured", add_picture_command},
     Command{"report", "one HTML file that shows runs", add_report_command},
     Command{"watch", "a run in a browser while it goes on", add_watch_command},
+    Command{"units", "from E, nu, size and density in SI units to the units of a scene, and back", add_units_command},
     Command{"info", "version, instruction set, scene reference", add_info_command},
 };
 

@@ -8,27 +8,31 @@ namespace boba {
 
 namespace {
 
-/// The plot program, in data_folder().
-std::filesystem::path plot_script() {
-  std::filesystem::path installed = data_folder() / "plot";
+/// The program that starts a part of the Python module, in data_folder().
+std::filesystem::path python_starter() {
+  std::filesystem::path installed = data_folder() / "start-python";
   if (!std::filesystem::exists(installed)) {
-    throw std::runtime_error(fmt::format("plot: {} is missing", installed.string()));
+    throw std::runtime_error(fmt::format("{} is missing", installed.string()));
   }
   return installed;
 }
 
-} // namespace
-
-CommandBody add_plot_command(CLI::App& app) {
-  // All arguments, --help among them, belong to the Python program.
+/// A command that python/boba/NAME.py carries out; all arguments, --help among them, are its own.
+CommandBody python_command(CLI::App& app, const std::string& name) {
   app.prefix_command();
   app.set_help_flag();
-  return [&app]() -> ExitCode {
-    std::vector<std::string> arguments = {plot_script().string()};
+  return [&app, name]() -> ExitCode {
+    std::vector<std::string> arguments = {python_starter().string(), name};
     const std::vector<std::string> rest = app.remaining();
     arguments.insert(arguments.end(), rest.begin(), rest.end());
     replace_process("/usr/bin/python3", arguments);
   };
 }
+
+} // namespace
+
+CommandBody add_plot_command(CLI::App& app) { return python_command(app, "plot"); }
+
+CommandBody add_picture_command(CLI::App& app) { return python_command(app, "picture"); }
 
 } // namespace boba

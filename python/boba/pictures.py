@@ -26,16 +26,21 @@ def placed_grains(frame):
     return [x + frame.shift_into_cell(centre) for x, centre in zip(frame.grains, frame.grain_centres)]
 
 
-def _fit(axes, points, margin):
+def fit(axes, points, margin):
     seen = points @ axes.T
     low, high = seen.min(axis=0) - margin, seen.max(axis=0) + margin
     return axes.T @ (0.5 * (low + high)), (high - low)[:2]
 
 
-def _cell_edges(frame):
-    corners = np.array([[i, j, k] for k in (0, 1) for j in (0, 1) for i in (0, 1)])
+def cell_edges(frame, axis=None, place=0.5):
+    """Both ends of the cell's twelve edges, or of the four where a plane at a fraction of one axis cuts it."""
+    corners = np.array([[i, j, k] for k in (0.0, 1.0) for j in (0.0, 1.0) for i in (0.0, 1.0)])
+    pairs = [(a, b) for a in range(8) for b in range(a + 1, 8) if np.abs(corners[a] - corners[b]).sum() == 1]
+    if axis is not None:
+        corners[:, axis] = place
+        pairs = [(a, b) for a, b in pairs if a >> axis & 1 == 0 and b >> axis & 1 == 0]
     at = frame.origin + corners @ frame.box.T
-    return [(at[a], at[b]) for a in range(8) for b in range(a + 1, 8) if np.abs(corners[a] - corners[b]).sum() == 1]
+    return [(at[a], at[b]) for a, b in pairs]
 
 
 def grains_picture(frame, path, direction=(0.5, 0.35, 1.0), width=900):
@@ -44,22 +49,29 @@ def grains_picture(frame, path, direction=(0.5, 0.35, 1.0), width=900):
     points = np.concatenate(grains)
     colours = np.repeat(grain_colours(len(grains)), [len(g) for g in grains], axis=0)
     axes = view_axes(direction)
-    centre, span = _fit(axes, points, 1.5)
+    centre, span = fit(axes, points, 1.5)
     picture = Picture(axes, centre, span, width)
     picture.spheres(points, colours)
     picture.save(path)
 
 
-def cross_section_picture(frame, path, thickness=3.0, width=900):
-    """The nodes within a slice through the middle of the cell, seen along z; each node wrapped into the cell."""
+def cross_section_nodes(frame, thickness, axis=2, place=0.5):
+    """Nodes, each wrapped into the cell, within a slice normal to an axis of the cell, and their grains."""
     fractional = np.linalg.solve(frame.box, (frame.positions - frame.origin).T).T
     fractional -= np.floor(fractional)
-    inside = np.abs(fractional[:, 2] - 0.5) * frame.box[2, 2] < 0.5 * thickness
-    points = frame.origin + fractional[inside] @ frame.box.T
+    # Distance of the faces that the slice is parallel to.
+    height = 1.0 / np.linalg.norm(np.linalg.inv(frame.box)[axis])
+    inside = np.abs(fractional[:, axis] - place) * height < 0.5 * thickness
+    grain = np.repeat(np.arange(len(frame.first_node) - 1), np.diff(frame.first_node))[inside]
+    return frame.origin + fractional[inside] @ frame.box.T, grain
+
+
+def cross_section_picture(frame, path, thickness=3.0, width=900):
+    """The nodes within a slice through the middle of the cell, seen along z; each node wrapped into the cell."""
+    points, grain = cross_section_nodes(frame, thickness)
     n_grains = len(frame.first_node) - 1
-    grain = np.repeat(np.arange(n_grains), np.diff(frame.first_node))[inside]
     axes = view_axes((0, 0, 1))
-    centre, span = _fit(axes, points, 1.5)
+    centre, span = fit(axes, points, 1.5)
     picture = Picture(axes, centre, span, width)
     picture.spheres(points, grain_colours(n_grains)[grain])
     picture.save(path)

@@ -4,7 +4,7 @@ import argparse
 import pathlib
 import sys
 
-from . import panels
+from . import look, panels
 from .run import open_run
 
 SHEET_FORMATS = (".png", ".pdf", ".svg")
@@ -26,14 +26,16 @@ def parse(arguments):
         metavar=("FIRST", "LAST"),
         help="strain window of averages (default: 1 5)",
     )
-    parser.add_argument("--labels", nargs="+", help="one a run (default: names of the folders)")
+    parser.add_argument("--labels", nargs="+", help="one for each run (default: names of the folders)")
+    parser.add_argument("--format", choices=("png", "pdf", "svg"), default="png", help="of the figures (default: png)")
+    parser.add_argument("--dpi", type=int, default=150, help="pixels per inch of PNG figures (default: 150)")
     parser.add_argument("--pictures", action="store_true", help="also draw the grains, a cross-section and hulls (VTK)")
     parser.add_argument("--frame", type=int, default=-1, help="frame of the pictures (default: the last)")
     parser.add_argument("--hulls", type=int, nargs="+", default=[0, 1, 2, 3], help="grains whose hulls are drawn")
     return parser.parse_args(arguments)
 
 
-def draw_panels(runs, window, folder, sheet_path):
+def draw_panels(runs, window, folder, sheet_path, dpi):
     import matplotlib
 
     matplotlib.use("Agg")
@@ -42,25 +44,26 @@ def draw_panels(runs, window, folder, sheet_path):
     chosen = panels.available(runs, window)
     if not chosen:
         return []
-    columns = min(3, len(chosen))
+    columns = 2 if len(chosen) in (2, 4) else min(3, len(chosen))
     rows = -(-len(chosen) // columns)
-    sheet, grid = plt.subplots(rows, columns, figsize=(5.2 * columns, 3.8 * rows), squeeze=False)
-    written = []
-    for axes in grid.flat[len(chosen) :]:
-        axes.axis("off")
-    for (name, draw), axes in zip(chosen, grid.flat):
-        draw(axes)
-        if folder is None:
-            continue
-        single, own = plt.subplots(figsize=(5.2, 3.8))
-        draw(own)
-        single.tight_layout()
-        written.append(folder / f"{name}.png")
-        single.savefig(written[-1], dpi=130)
-        plt.close(single)
-    sheet.tight_layout()
-    written.append(sheet_path)
-    sheet.savefig(written[-1], dpi=110)
+    with plt.rc_context(look.style()):
+        size = (4.6 * columns, 3.2 * rows)
+        sheet, grid = plt.subplots(rows, columns, figsize=size, squeeze=False, layout="constrained")
+        written = []
+        for axes in grid.flat[len(chosen) :]:
+            axes.axis("off")
+        for (name, draw), axes in zip(chosen, grid.flat):
+            draw(axes)
+            if folder is None:
+                continue
+            single, own = plt.subplots(figsize=(4.6, 3.2), layout="constrained")
+            draw(own)
+            written.append(folder / f"{name}{sheet_path.suffix}")
+            single.savefig(written[-1], dpi=dpi)
+            plt.close(single)
+        written.append(sheet_path)
+        sheet.savefig(written[-1], dpi=dpi)
+        plt.close(sheet)
     return written
 
 
@@ -81,6 +84,9 @@ def draw_pictures(runs, frame_number, hulls, folder):
 
 def main(arguments=None):
     chosen = parse(arguments)
+    if not 20 <= chosen.dpi <= 2400:
+        print(f"boba plot: --dpi {chosen.dpi}: must be from 20 to 2400", file=sys.stderr)
+        return 2
     labels = chosen.labels or [pathlib.Path(run).resolve().name for run in chosen.runs]
     if len(labels) != len(chosen.runs):
         print(f"boba plot: {len(labels)} labels for {len(chosen.runs)} runs", file=sys.stderr)
@@ -124,9 +130,9 @@ def draw(chosen, runs):
         )
     else:
         folder = output or runs[0][1].folder / "plots"
-        sheet = (folder if output else runs[0][1].folder) / "plot.png"
+        sheet = (folder if output else runs[0][1].folder) / f"plot.{chosen.format}"
         folder.mkdir(parents=True, exist_ok=True)
-    written = draw_panels(runs, tuple(chosen.window), folder, sheet)
+    written = draw_panels(runs, tuple(chosen.window), folder, sheet, chosen.dpi)
     if chosen.pictures:
         written += draw_pictures(runs, chosen.frame, chosen.hulls, folder or sheet.parent)
     if not written:

@@ -105,9 +105,13 @@ class Picture:
         points = np.asarray(a) + np.linspace(0, 1, n)[:, None] * (np.asarray(b) - a)
         self.spheres(points, np.tile(colour, (n, 1)), radius=0.5 * width * self.oversampling / self.scale)
 
+    def pixels(self):
+        """Colours from 0 to 255, shape (rows, columns, 3)."""
+        k = self.oversampling
+        means = self.colour.reshape(self.ny // k, k, self.nx // k, k, 3).mean(axis=(1, 3))
+        return np.clip(means, 0, 255).astype(np.uint8)
+
     def save(self, path):
         from matplotlib import image
 
-        k = self.oversampling
-        pixels = self.colour.reshape(self.ny // k, k, self.nx // k, k, 3).mean(axis=(1, 3))
-        image.imsave(path, np.clip(pixels, 0, 255).astype(np.uint8))
+        image.imsave(path, self.pixels())

@@ -7,7 +7,7 @@ import unittest
 import h5py
 import numpy as np
 import boba
-from boba import plot
+from boba import look, panels, picture, plot
 from boba.pictures import hull_of
 from boba.render import Picture, view_axes
 from made_run import write_table
@@ -158,8 +158,73 @@ class Module(unittest.TestCase):
         names = {path.stem for path in (self.folder / "plots").glob("*.png")}
         self.assertTrue((self.folder / "plot.png").exists())
         self.assertLessEqual(
-            {"stress_ratio", "packing_fraction", "pressure", "volume_distribution", "rheology", "grains", "hulls"},
+            {"stress_ratio", "volume_distribution", "facet_counts", "grains", "hulls"},
             names,
         )
-        self.assertNotIn("crystal_classes", names)
+        # Nothing to show: no order measured, one run alone, a pressure and a packing fraction that stay as they are.
+        for absent in ("crystal_classes", "rheology", "pressure", "packing_fraction", "compaction", "press"):
+            self.assertNotIn(absent, names)
         self.assertEqual(plot.main([str(self.folder / "nothing")]), 2)
+
+    def test_plot_writes_vector_formats_and_refuses_others(self):
+        self.assertEqual(plot.main([str(self.folder), "--format", "svg", "--output", str(self.folder / "v")]), 0)
+        self.assertIn("<svg", (self.folder / "v" / "stress_ratio.svg").read_text())
+        self.assertEqual(plot.main([str(self.folder), "--dpi", "5"]), 2)
+
+    def test_a_shear_that_turns_back_is_drawn_along_its_way(self):
+        there = [0.0, 0.0, 0.1, 0.2, 0.3, 0.2, 0.1]
+        write_table(
+            self.folder / "table.csv",
+            {"step": list(range(7)), "time_tau": [float(k) for k in range(7)], "strain": there, "mu": [0.1] * 7},
+        )
+        run = boba.open(self.folder)
+        rows, x, label = panels.abscissa(run)
+        np.testing.assert_allclose(x, [0.0, 0.1, 0.2, 0.3, 0.4, 0.5])
+        self.assertEqual(list(run.table["strain"][rows]), there[1:])
+        self.assertIn("way", label)
+        # A table of measures with fewer rows gets its places from the run's own table.
+        rows, x, _ = panels.abscissa(run, {"step": np.array([0.0, 4.0, 6.0]), "strain": np.array([0.0, 0.3, 0.1])})
+        np.testing.assert_allclose(x, [0.3, 0.5])
+
+    def test_a_compression_is_the_rows_that_grow_denser_above_rounding(self):
+        write_table(
+            self.folder / "table.csv",
+            {
+                "step": list(range(8)),
+                "time_tau": [float(k) for k in range(8)],
+                "strain": [0.0] * 6 + [0.1, 0.2],
+                "phi_reference": [0.4, 0.5, 0.6, 0.7, 0.69, 0.71, 0.8, 0.9],
+                "P_k/d": [1e-17, 1e-3, 1e-2, 0.1, 0.09, 0.1, 0.2, 0.3],
+            },
+        )
+        # Row 0 is rounding, row 4 is less dense than the one before, rows 6 and 7 are sheared; a step of strain
+        # belongs to the row where it begins, the last one at rest.
+        self.assertEqual(list(panels.compression_rows(boba.open(self.folder))), [1, 2, 3])
+
+    def test_labels_are_sorted_as_numbers_and_carry_units(self):
+        self.assertEqual(sorted(["1e-2", "9e-3", "0.1"], key=look.natural), ["9e-3", "1e-2", "0.1"])
+        self.assertEqual(sorted(["run10", "run2", "run1"], key=look.natural), ["run1", "run2", "run10"])
+        self.assertEqual(look.quantity("P_k/d", "pressure"), "pressure $P$ ($k/d$)")
+        self.assertEqual(look.quantity("volume_d3"), "$V$ ($d^3$)")
+        self.assertEqual(look.quantity("mu"), r"$\mu$")
+        self.assertEqual(len(set(map(str, look.colours(20)))), 20)
+
+    def test_picture_is_coloured_by_what_was_measured(self):
+        out = str(self.folder / "p.png")
+        for arguments in (["--colour", "volume"], ["--colour", "facets", "--hulls"], ["--section", "z", "--no-cell"]):
+            self.assertEqual(picture.main([str(self.folder), "--output", out, "--width", "200", *arguments]), 0)
+        colouring = picture.Colouring(boba.open(self.folder), boba.open(self.folder).frames[0], picture.parse(["x"]))
+        self.assertEqual(len(colouring.of_grain), 2)
+        chosen = picture.parse(["x", "--colour", "volume"])
+        colouring = picture.Colouring(boba.open(self.folder), boba.open(self.folder).frames[0], chosen)
+        self.assertEqual(colouring.limits, (12.0, 13.0))  # volumes of step 7, which the frame is
+        # The ends of viridis: dark violet and yellow.
+        np.testing.assert_allclose(colouring.of_grain[0], [68, 1, 84], atol=1)
+        np.testing.assert_allclose(colouring.of_grain[1], [253, 231, 37], atol=1)
+        for wrong in (["--colour", "nonsense"], ["--frame", "3"], ["--section", "q"], ["--output", "x.doc"]):
+            self.assertEqual(picture.main([str(self.folder), *wrong]), 2)
+
+    def test_pressure_of_a_grain_is_its_part_of_the_stress_over_its_volume(self):
+        frame = boba.open(self.folder).frames[0]
+        frame.grain_stress = np.array([[-3.0, -6.0, -9.0, 0, 0, 0], [-12.0, -12.0, -12.0, 0, 0, 0]])
+        np.testing.assert_allclose(picture.pressures(boba.open(self.folder), frame), [6.0 / 12.0, 12.0 / 13.0])
