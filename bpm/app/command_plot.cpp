@@ -31,8 +31,12 @@ CommandBody python_command(CLI::App& app, const std::string& name) {
 
 } // namespace
 
-CommandBody add_plot_command(CLI::App& app) { return python_command(app, "plot"); }
+CommandBody add_plot_command(CLI::App& app) {
+  return python_command(app, "plot");
+}
 
-CommandBody add_picture_command(CLI::App& app) { return python_command(app, "picture"); }
+CommandBody add_picture_command(CLI::App& app) {
+  return python_command(app, "picture");
+}
 
 } // namespace boba

@@ -127,7 +127,7 @@ def spectra(results, axes, column, chosen):
 
 
 def compaction_shown(results):
-    """The compaction at nu = 0.4 that has the most nodes a grain, of those that have spectra; None when there is none."""
+    """The compaction at nu = 0.4 that has the most nodes per grain, of those that have spectra; None when there is none."""
     names = [name for name in results.runs(scene="compaction", alpha="-0.8") if results.rows("scattering", name)]
     return max(names, key=lambda name: int(results.plan[name]["nodes"]), default=None)
 
@@ -153,7 +153,7 @@ def strain_curves(results):
 
 
 def spectra_panels(results, column):
-    """Figure 2's and S1's two panels, one above the other, with the nodes a grain of the upper one."""
+    """Figure 2's and S1's two panels, one above the other, with the nodes per grain of the upper one."""
     figure, (upper, lower) = plt.subplots(2, 1, figsize=(4.6, 6))
     compaction = compaction_shown(results)
     nodes = int(results.plan[compaction]["nodes"]) if compaction else 300
@@ -401,7 +401,7 @@ def figure_s4(results, folder):
         axis.set_ylabel(f"{label(alpha)}\nordered share", fontsize=8)
         if axis.lines:
             axis.legend(fontsize=6, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, borderpad=0.1)
-    axes[-1].set_xlabel("strain (300 nodes a grain, rate 2.048e-3)")
+    axes[-1].set_xlabel("strain (300 nodes per grain, rate 2.048e-3)")
     save(figure, folder, "figure_S4")
 
 

@@ -221,7 +221,7 @@ def order_rows(table, results):
                 f"runs that order, nu = {nu:g}, {packing_text(grains, nodes, surface)}, rate {rate}",
                 published[alpha],
                 f"{len(ordered)} of {len(names)} ({detail})" if names else "not afforded",
-                f"{int(grains) ** (1 / 3):.0f} grains an edge (published: 10); rate {float(rate) / 1.6e-5:.0f} times the published one",
+                f"{int(grains) ** (1 / 3):.0f} grains per edge (published: 10); rate {float(rate) / 1.6e-5:.0f} times the published one",
             )
 
 
