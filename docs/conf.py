@@ -64,5 +64,8 @@ def write_forward(app, exception):
 
 
 def setup(app):
+    from pygments.lexers.special import TextLexer
+
+    app.add_lexer("layers", TextLexer)  # the table that check-dependencies reads
     app.add_html_math_renderer("katex", (inline_equation, None), (displayed_equation, None))
     app.connect("build-finished", write_forward)
