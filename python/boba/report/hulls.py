@@ -7,17 +7,21 @@ import dataclasses
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-NODE_RADIUS = 0.5  # d
+NODE_RADIUS = 0.5  # d, where the scene has no material.contact_diameter
 
 
 @dataclasses.dataclass(frozen=True)
 class Outline:
-    """vertices: shape (v, 3), d; triangles: shape (t, 3), outward; volume (d^3), area (d^2) of the nodes' hull."""
+    """vertices: shape (v, 3), d; triangles: shape (t, 3), outward; volume (d^3), area (d^2) of the nodes' hull.
+
+    normals: shape (t, 3), outward, of the triangles before they grew.
+    """
 
     vertices: np.ndarray
     triangles: np.ndarray
     volume: float
     area: float
+    normals: np.ndarray
 
     @property
     def asphericity(self) -> float:
@@ -68,8 +72,9 @@ def ball(centre: np.ndarray, radius: float, n: int = 32) -> tuple[np.ndarray, np
     return centre + radius * directions, outward_triangles(directions, ConvexHull(directions))
 
 
-def outline_of(nodes: np.ndarray, most_vertices: int) -> Outline:
-    """Outline of a grain with nodes of shape (n, 3): its convex hull, of at most `most_vertices` vertices, grown by d/2.
+def outline_of(nodes: np.ndarray, most_vertices: int, radius: float = NODE_RADIUS) -> Outline:
+    """Outline of a grain with nodes of shape (n, 3): its convex hull, of at most `most_vertices` vertices, grown by
+    the nodes' radius, d.
 
     Larger hulls keep the nodes that lie farthest out in so many directions. Nodes that lie in a plane, and single
     ones, become a ball. Volume and area are those of the whole hull through the nodes' centres (docs/notation.md); of a
@@ -89,10 +94,11 @@ def outline_of(nodes: np.ndarray, most_vertices: int) -> Outline:
                 corners = corners[np.unique(farthest)]
             small = ConvexHull(corners)
             triangles = outward_triangles(corners, small)
-            return Outline(grown(corners, triangles, NODE_RADIUS), triangles, volume, area)
+            return Outline(grown(corners, triangles, radius), triangles, volume, area, small.equations[:, :3])
     middle = nodes.mean(axis=0)
     reach = float(np.linalg.norm(nodes - middle, axis=1).max())
-    vertices, triangles = ball(middle, reach + NODE_RADIUS, min(most_vertices, 48))
+    vertices, triangles = ball(middle, reach + radius, min(most_vertices, 48))
+    normals = np.zeros((len(triangles), 3))
     if len(nodes) == 1:
-        return Outline(vertices, triangles, np.pi / 6, np.pi)
-    return Outline(vertices, triangles, float("nan"), float("nan"))
+        return Outline(vertices, triangles, np.pi / 6, np.pi, normals)
+    return Outline(vertices, triangles, float("nan"), float("nan"), normals)

@@ -12,10 +12,12 @@ import numpy as np
 from ..frames import Frame
 from ..run import Run
 from .curves import plain
-from .hulls import Outline, outline_of
+from .hulls import NODE_RADIUS, Outline, outline_of
 
 # Triangles that a frame may have: what software rendering turns at more than 20 frames a second at 800 x 600.
 MOST_TRIANGLES = 60_000
+#: A triangle belongs to a facet when their normals are as near as the rule of the measure has it (docs/formats-measure.md).
+FACET_COSINE = 0.99
 MOST_VERTICES, FEWEST_VERTICES = 160, 14
 
 
@@ -59,7 +61,7 @@ def _by_grain(run: Run, table: str, column: str, step: int, molecules: np.ndarra
 
 
 def _facets_of(run: Run, step: int, molecules: np.ndarray, outlines: list[Outline]) -> list[np.ndarray] | None:
-    """For each grain and triangle 1 where it lies in a facet that was measured (within 15 degrees of its normal)."""
+    """For each grain and triangle 1 where it lies in a facet that was measured."""
     try:
         rows = run.rows("facets", step)
     except (OSError, KeyError):
@@ -68,13 +70,9 @@ def _facets_of(run: Run, step: int, molecules: np.ndarray, outlines: list[Outlin
     grains = rows["grain"].astype(int)
     marks = []
     for molecule, outline in zip(molecules, outlines):
-        a, b, c = (outline.vertices[outline.triangles[:, k]] for k in range(3))
-        faces = np.cross(b - a, c - a)
-        faces /= np.maximum(np.linalg.norm(faces, axis=1, keepdims=True), 1e-300)
         own = normals[grains == molecule]
-        near = (
-            (faces @ own.T).max(axis=1, initial=-1) > np.cos(np.radians(15)) if len(own) else np.zeros(len(faces), bool)
-        )
+        cosine = (outline.normals @ own.T).max(axis=1, initial=-1) if len(own) else np.full(len(outline.normals), -1.0)
+        near = cosine > FACET_COSINE
         marks.append(near.astype(np.uint8))
     return marks
 
@@ -174,12 +172,21 @@ def _frame_data(
     return data
 
 
+def node_radius(run: Run) -> float:
+    """Half of the diameter at which nodes touch, d."""
+    try:
+        diameter = run.scene.values["material"]["contact_diameter"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return NODE_RADIUS
+    return 0.5 * diameter if isinstance(diameter, (int, float)) and diameter > 0 else NODE_RADIUS
+
+
 def _outlined(run: Run, number: int, vertices: int, cache: dict[Any, Any]) -> tuple[Frame, list[Outline]]:
     """A frame without its nodes, and the outlines of its grains."""
     key = (number, vertices)
     if key not in cache:
-        frame = run.frames[number]
-        outlines = [outline_of(nodes, vertices) for nodes in _placed(frame)]
+        frame, radius = run.frames[number], node_radius(run)
+        outlines = [outline_of(nodes, vertices, radius) for nodes in _placed(frame)]
         frame.positions, frame.velocities = np.empty((0, 3)), None
         cache[key] = (frame, outlines)
     return cache[key]

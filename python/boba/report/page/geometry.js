@@ -38,6 +38,44 @@
     return result;
   };
 
+  /** Where the plane through `place` across an axis (0, 1, 2) cuts the edges of a grain's triangles: points in turn. */
+  const outlineOfSection = (triangles, grain, axis, place) => {
+    const { places, first } = triangles;
+    const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+    const points = [];
+    for (let t = first[grain]; t < first[grain + 1]; t += 1) {
+      for (let k = 0; k < 3; k += 1) {
+        const [a, b] = [9 * t + 3 * k, 9 * t + 3 * ((k + 1) % 3)];
+        const [from, to] = [places[a + axis] - place, places[b + axis] - place];
+        if (from < 0 && to >= 0) {
+          const share = from / (from - to);
+          points.push([0, 1, 2].map((c) => places[a + c] + share * (places[b + c] - places[a + c])));
+        }
+      }
+    }
+    const middle = [u, v].map((c) => points.reduce((sum, p) => sum + p[c], 0) / points.length);
+    return points.sort((p, q) => Math.atan2(p[v] - middle[1], p[u] - middle[0]) - Math.atan2(q[v] - middle[1], q[u] - middle[0]));
+  };
+
+  /** Cross-section of convex grains: flat `faces` (9 numbers a triangle), the grain of each, and `edges` around them. */
+  Report.section = (triangles, axis, place, lift) => {
+    const [faces, edges, grains] = [[], [], []];
+    for (let grain = 0; grain + 1 < triangles.first.length; grain += 1) {
+      const points = outlineOfSection(triangles, grain, axis, place);
+      // Each grain a little above the one before, so that where two overlap one of them is seen.
+      points.forEach((p) => (p[axis] += lift * (1 + grain % 64)));
+      for (let k = 0; k < points.length && points.length > 2; k += 1) {
+        const next = points[(k + 1) % points.length];
+        edges.push(...points[k], ...next);
+        if (k > 0 && k + 1 < points.length) {
+          faces.push(...points[0], ...points[k], ...next);
+          grains.push(grain);
+        }
+      }
+    }
+    return { faces: new Float32Array(faces), edges: new Float32Array(edges), grains };
+  };
+
   const kept = new WeakMap();
   /** Triangles of a frame, unpacked once. Places count from the packing's centre. */
   Report.triangles = (packing, k) => {

@@ -13,6 +13,9 @@
   const quantity = () => packing().quantities.find((own) => own.key === state.colour) ?? packing().quantities[0];
   const axes = { x: 0, y: 1, z: 2 };
 
+  /** Components of colours, from 0 to 255, as three.js adds them up. */
+  const linear = new Float32Array(256).map((_, v) => (v / 255 <= 0.04045 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4));
+
   // --- three.js ------------------------------------------------------------------------------------------------------
 
   const makeView = (canvas) => {
@@ -32,9 +35,10 @@
     const geometry = new THREE.BufferGeometry();
     const plane = new THREE.Plane();
     const outside = new THREE.MeshLambertMaterial({ vertexColors: true, flatShading: true });
-    // Seen through the cut, the insides of convex grains look like flat sections.
-    const inside = new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.BackSide });
-    const meshes = [new THREE.Mesh(geometry, outside), new THREE.Mesh(geometry, inside)];
+    const flat = new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.DoubleSide });
+    const section = new THREE.Mesh(new THREE.BufferGeometry(), flat);
+    const rims = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x202630 }));
+    const meshes = [new THREE.Mesh(geometry, outside), section, rims];
     meshes.forEach((mesh) => (mesh.frustumCulled = false));
     const cell = new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x808a96 }));
     cell.frustumCulled = false;
@@ -42,7 +46,7 @@
     const controls = new THREE.OrbitControls(camera, canvas);
     controls.enableDamping = false;
     controls.addEventListener("change", () => render());
-    return { renderer, scene, camera, geometry, plane, materials: [outside, inside], meshes, cell, controls, ratio: Math.min(devicePixelRatio, 2), times: [] };
+    return { renderer, scene, camera, geometry, plane, outside, section, rims, meshes, cell, controls, ratio: Math.min(devicePixelRatio, 2), times: [] };
   };
 
   let pending = false;
@@ -126,8 +130,6 @@
     render();
   };
 
-  const linear = new Float32Array(256).map((_, v) => (v / 255 <= 0.04045 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4));
-
   /** Colours, and which triangles are drawn: hidden grains are left out. */
   const colour = () => {
     const { triangles } = state;
@@ -142,12 +144,12 @@
     state.shownGrain = new Uint32Array(triangles.n);
     for (let t = 0; t < triangles.n; t += 1) {
       const grain = triangles.grain[t];
-      const aside = state.followed !== null && grain !== state.followed;
-      if (aside && state.others === "hidden") {
+      const base = colourOfGrain(grain, ofGrain);
+      if (!base) {
         continue;
       }
-      const rgb = aside && state.others === "grey" ? [170, 176, 184]
-        : ofGrain ? ofGrain[grain] : triangles.facet ? Report.classColour(own.classes, triangles.facet[t]) : [150, 156, 164];
+      const aside = state.followed !== null && grain !== state.followed && state.others !== "shown";
+      const rgb = aside || ofGrain || !triangles.facet ? base : Report.classColour(own.classes, triangles.facet[t]);
       target.set(triangles.places.subarray(9 * t, 9 * t + 9), 9 * n);
       for (let corner = 0; corner < 3; corner += 1) {
         for (let c = 0; c < 3; c += 1) {
@@ -161,6 +163,44 @@
     places.needsUpdate = true;
     colours.needsUpdate = true;
     view.geometry.computeBoundingSphere();
+    if (state.cut !== "off") {
+      cut();
+    }
+  };
+
+  /** Colour of a grain, [r, g, b] from 0 to 255, or null for one that is hidden. */
+  const colourOfGrain = (grain, ofGrain) => {
+    const aside = state.followed !== null && grain !== state.followed;
+    if (aside && state.others !== "shown") {
+      return state.others === "hidden" ? null : [170, 176, 184];
+    }
+    return ofGrain ? ofGrain[grain] : [150, 156, 164];
+  };
+
+  const fillSection = (axis, place, reach) => {
+    if (!state.triangles) {
+      return;
+    }
+    const own = quantity();
+    const ofGrain = own.kind === "triangle" ? null : Report.grainColours(packing(), state.frame, own);
+    const { faces, edges, grains } = Report.section(state.triangles, axis, place, reach * 2e-5);
+    const seen = grains.map((grain) => colourOfGrain(grain, ofGrain));
+    const places = [];
+    const colours = [];
+    state.sectionGrain = [];
+    seen.forEach((rgb, t) => {
+      if (rgb) {
+        places.push(...faces.subarray(9 * t, 9 * t + 9));
+        for (let corner = 0; corner < 3; corner += 1) {
+          colours.push(...rgb.map((value) => linear[Math.round(value)]));
+        }
+        state.sectionGrain.push(grains[t]);
+      }
+    });
+    view.section.geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(places), 3));
+    view.section.geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(colours), 3));
+    view.section.geometry.computeBoundingSphere();
+    view.rims.geometry.setAttribute("position", new THREE.BufferAttribute(state.others === "hidden" && state.followed !== null ? new Float32Array() : edges, 3));
   };
 
   const cut = () => {
@@ -169,20 +209,19 @@
     }
     const on = state.cut !== "off";
     const planes = on ? [view.plane] : [];
+    view.section.visible = view.rims.visible = on;
     if (on) {
       const normal = [0, 0, 0];
       normal[axes[state.cut]] = -1;
       const reach = packing().quantum * 32767;
       view.plane.normal.set(...normal);
       view.plane.constant = (2 * state.place - 1) * reach;
+      fillSection(axes[state.cut], view.plane.constant, reach);
     }
-    view.materials.forEach((material) => {
-      if (material.clippingPlanes?.length !== planes.length) {
-        material.needsUpdate = true;
-      }
-      material.clippingPlanes = planes;
-    });
-    view.materials[1].visible = on;
+    if (view.outside.clippingPlanes?.length !== planes.length) {
+      view.outside.needsUpdate = true;
+    }
+    view.outside.clippingPlanes = planes;
     render();
   };
 
@@ -191,10 +230,11 @@
     const box = view.renderer.domElement.getBoundingClientRect();
     const ray = new THREE.Raycaster();
     ray.setFromCamera(new THREE.Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2), view.camera);
-    const hits = ray.intersectObjects(state.cut === "off" ? [view.meshes[0]] : view.meshes);
-    const seen = hits.filter((hit) => state.cut === "off" || view.plane.distanceToPoint(hit.point) >= 0);
-    const nearest = seen.find((hit) => 3 * hit.faceIndex < view.geometry.drawRange.count);
-    return nearest ? state.shownGrain[nearest.faceIndex] : null;
+    const on = state.cut !== "off";
+    const hits = ray.intersectObjects(on ? view.meshes.slice(0, 2) : [view.meshes[0]]);
+    const nearest = hits.find((hit) => hit.object === view.section
+      || (3 * hit.faceIndex < view.geometry.drawRange.count && (!on || view.plane.distanceToPoint(hit.point) >= 0)));
+    return nearest ? (nearest.object === view.section ? state.sectionGrain : state.shownGrain)[nearest.faceIndex] : null;
   };
 
   // --- the grain that is followed ------------------------------------------------------------------------------------
@@ -461,7 +501,7 @@
         element("div", { class: "row" }, element("label", {}, "Follow grain", parts.number), others),
         element("div", { class: "row" }, element("button", { type: "button", onclick: resetCamera }, "Reset view"),
           element("button", { type: "button", onclick: savePicture }, "PNG")),
-        element("p", { class: "quiet hint" }, `${own.grains.length} grains, ${own.nodes} nodes; ${own.frames.length} frames. Outlines are convex hulls of the nodes, grown by d/2`
+        element("p", { class: "quiet hint" }, `${own.grains.length} grains, ${own.nodes} nodes; ${own.frames.length} frames. Outlines are convex hulls of the nodes, grown to the nodes' surface`
           + `${own.simplified ? ", simplified to be drawn quickly" : ""}; volume and asphericity are those of the whole hulls.`),
         parts.follow));
     return canvas;
