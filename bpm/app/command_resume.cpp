@@ -28,6 +28,7 @@ struct ResumeArguments {
   bool allow_other_isa = false;
   bool accept_gaps = false;
   bool quiet = false;
+  std::string caller;
 };
 
 /// The same numbers come only from the same instruction set.
@@ -96,6 +97,7 @@ ExitCode resume(const ResumeArguments& a, const Ranks& ranks) {
     ranks.collectively([&] { setup = setup_from(checkpoint, folder); });
   }
   setup->begin = begin;
+  setup->caller = caller_of(a.caller, ranks);
   setup->lock = std::move(lock);
   setup->gaps = std::move(gaps);
   setup->accept_gaps = a.accept_gaps;
@@ -126,6 +128,7 @@ CommandBody add_resume_command(CLI::App& app) {
                "continue although the instruction set differs: no longer bit for bit");
   app.add_flag("--accept-gaps", a->accept_gaps, "continue although files of the run are missing, cut short or edited");
   app.add_flag("--quiet", a->quiet, "print nothing but errors");
+  app.add_option("--caller", a->caller, "pipes to the program that looks at the run")->group("");
   return [a] { return on_all_ranks([a](const Ranks& ranks) { return resume(*a, ranks); }); };
 }
 

@@ -29,6 +29,7 @@ struct RunArguments {
   std::optional<double> wall_time;
   bool force = false;
   bool quiet = false;
+  std::string caller;
 };
 
 /// The scene as it was given, with the command line's changes as comments; an older one is replaced in one go.
@@ -113,6 +114,7 @@ ExitCode run(const RunArguments& a, const Ranks& ranks) {
   std::optional<RunSetup> setup;
   ranks.collectively([&] { setup = prepare(a, ranks); });
   setup->begin = begin;
+  setup->caller = caller_of(a.caller, ranks);
   share_packing(setup->packing, ranks);
   ranks.broadcast(setup->modulus);
   ranks.broadcast(setup->scene.options.dt);
@@ -147,6 +149,8 @@ CommandBody add_run_command(CLI::App& app) {
       ->check(positive_seconds());
   app.add_flag("--force", a->force, "replace the run that is in the output folder");
   app.add_flag("--quiet", a->quiet, "print nothing but errors");
+  // Of the Python module; not shown in the help.
+  app.add_option("--caller", a->caller, "pipes to the program that looks at the run")->group("");
   return [a] { return on_all_ranks([a](const Ranks& ranks) { return run(*a, ranks); }); };
 }
 

@@ -151,6 +151,10 @@ private:
     for (const auto& frames : writers_.frames) {
       observers.push_back(frames.get());
     }
+    if (setup_.caller) {
+      caller_ = std::make_unique<CallerObserver>(*setup_.caller, simulation_.packing().topology(false));
+      observers.push_back(caller_.get());
+    }
     observers.push_back(&progress_);
     observers.push_back(checkpoints_.get()); // last: it points back to what the others write
     if (!setup_.restart) {
@@ -161,8 +165,7 @@ private:
         continue; // done before the checkpoint
       }
       summary_.begin(simulation_);
-      const RunOutcome outcome =
-          simulation_.run(stage.index, *stage.driver, observers, [this] { return stop_.pending(); });
+      const RunOutcome outcome = simulation_.run(stage.index, *stage.driver, observers, [this] { return must_stop(); });
       progress_.finish();
       if (outcome == RunOutcome::stopped) {
         return stop();
@@ -180,9 +183,11 @@ private:
     return finish();
   }
 
+  bool must_stop() const { return stop_.pending() || (caller_ && caller_->wants_to_stop()); }
+
   /// Another rank may be the one that was told to.
   std::string stop_reason() const {
-    const std::string own = stop_.reason();
+    const std::string own = stop_.reason().empty() && caller_ ? "the program that started it" : stop_.reason();
     return own.empty() ? "a signal to another rank" : own;
   }
 
@@ -234,6 +239,7 @@ private:
   RunWriters writers_;
   OutputRecord output_record_;
   std::unique_ptr<CheckpointObserver> checkpoints_;
+  std::unique_ptr<CallerObserver> caller_;
 };
 
 } // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/app/caller_observer.h"
 #include "bpm/app/output_folder.h"
 #include "bpm/dynamics/simulation.h"
 #include "bpm/io/folder_lock.h"
@@ -38,6 +39,7 @@ struct RunSetup {
 
   std::chrono::steady_clock::time_point begin; ///< of the command: the wall-time limit counts from here
   std::shared_ptr<const FolderLock> lock;      ///< of the folder; on rank 0
+  std::optional<CallerPipes> caller;           ///< the program that started this one and looks at the run
 };
 
 } // namespace boba

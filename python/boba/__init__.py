@@ -12,14 +12,20 @@
     run.universe()                         # MDAnalysis, where it is installed
     boba.crystallisation(run.measure("order"))  # onset, largest nucleus, whether the packing crystallised
 
-Needs numpy, and h5py for the frames. Columns and units: docs/formats-measure.md.
+    sim = boba.Simulation("scene.toml", set={"stage.shear.rate": 1e-4}, output="out/slow")
+    for state in sim.steps(every=100):     # runs; state.positions, state.stress, state.mu ...
+        ...
+
+Needs numpy, h5py for the frames, and for Simulation the program boba. Columns and units: docs/formats-measure.md.
 """
 from ._version import __version__
 from .blocking import blocked_mean
 from .crystals import Crystallisation, crystallisation
 from .frames import Frame, Frames
+from .program import InputError, RunError
 from .run import Run, open_run
 from .scene import Stage
+from .simulation import Simulation, State
 from .table import Table, read_table
 
 open = open_run  # the module's own name for it: boba.open(run)
@@ -28,8 +34,12 @@ __all__ = [
     "Crystallisation",
     "Frame",
     "Frames",
+    "InputError",
     "Run",
+    "RunError",
+    "Simulation",
     "Stage",
+    "State",
     "Table",
     "__version__",
     "blocked_mean",
