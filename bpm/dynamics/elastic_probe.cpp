@@ -40,7 +40,8 @@ Virial6 virial_when_deformed(MovingPacking& moving, const std::vector<Vector3>& 
   Box deformed = box;
   deformed.set_h(deformation * box.h());
   moving.forces.contact_list().invalidate();
-  moving.forces.evaluate(moving.state, deformed, {.virial = what, .is_trial = true, .residual_rate = moving.cell.residual_rate()});
+  moving.forces.evaluate(moving.state, deformed,
+                         {.virial = what, .is_trial = true, .residual_rate = moving.cell.residual_rate()});
   moving.forces.share_sums(what);
   Virial6 sum;
   sum.volume = deformed.volume();

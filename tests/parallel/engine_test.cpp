@@ -40,8 +40,8 @@ INSTANTIATE_TEST_SUITE_P(Cases, OnRanks,
                                            OnRanksCase{"stops", {2}}, OnRanksCase{"velocities", {3}},
                                            OnRanksCase{"compress", {2}}, OnRanksCase{"walls", {3}},
                                            OnRanksCase{"clamps", {2}}, OnRanksCase{"migrating", {2, 3, 4, 7}},
-                                           OnRanksCase{"breaking", {2, 3, 7}},
-                                           OnRanksCase{"dealt", {2, 3, 4, 7}}, OnRanksCase{"scattering", {2, 3, 4, 7}}),
+                                           OnRanksCase{"breaking", {2, 3, 7}}, OnRanksCase{"dealt", {2, 3, 4, 7}},
+                                           OnRanksCase{"scattering", {2, 3, 4, 7}}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 TEST(FailingRank, EndsAllWithOneMessage) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Deformations of the cell by component: volume, flips, held stresses, work, and the same bits for threads and
 // restarts.
-#include "bpm/stages/deform.h"
-
 #include "bpm/archive/archive.h"
 #include "bpm/dynamics/stepper.h"
 #include "bpm/dynamics/take_snapshot.h"
 #include "bpm/io/input_error.h"
+#include "bpm/stages/deform.h"
 #include "bpm/stages/hold.h"
 #include "tests/physics/dynamics/nine_grains.h"
 

@@ -261,7 +261,13 @@ class Program(unittest.TestCase):
     def test_plot_of_a_run(self):
         plotted = boba_program(self.folder, "plot", "run", "--pictures", "--window", "0.05", "0.3")
         self.assertEqual(plotted.returncode, 0, plotted.stderr)
-        for name in ("plot.png", "plots/facet_counts.png", "plots/grains.png", "plots/hulls.png", "plots/stress_ratio.png"):
+        for name in (
+            "plot.png",
+            "plots/facet_counts.png",
+            "plots/grains.png",
+            "plots/hulls.png",
+            "plots/stress_ratio.png",
+        ):
             self.assertGreater((self.folder / "run" / name).stat().st_size, 5000, name)
 
 
