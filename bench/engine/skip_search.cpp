@@ -25,7 +25,7 @@ int steps_of_a_common_list(const Packing& packing, const SimulationOptions& opti
 
 struct Steps {
   CellRates cell;
-  bool common_lists = false; ///< all is searched anew by the usual rule
+  bool common_lists = false; ///< all is searched again by the usual rule
   double gamma = Material{}.gamma;
 };
 

@@ -93,7 +93,7 @@ void ForceField::note_fast_nodes(const Block& block, std::span<const std::int32_
         u[0] -= Vector3(drift.residual[0], drift.residual[1], drift.residual[2]).dot(state.position(grain, node)) +
                 drift.residual_shift;
       }
-      if (const double speed2 = u.squaredNorm(); speed2 > drift.brisk_speed2) {
+      if (const double speed2 = u.squaredNorm(); speed2 > drift.fast_speed2) {
         drifted.fast_nodes.push_back({grain, node});
         if (!contact_list_.follows(grain, node)) {
           drifted.motion.common_speed2 = std::max(drifted.motion.common_speed2, speed2);
@@ -117,9 +117,9 @@ ForceField::Drifted ForceField::drift_nodes(const Block& block, int begin, int e
       collected[lane] = std::lower_bound(near(grain).begin(), near(grain).end(), begin) - near(grain).begin();
     }
   }
-  std::array<std::int32_t, static_cast<std::size_t>(drift_chunk) * max_lanes> brisk;
-  drift.brisk = brisk.data();
-  drift.brisk_speed2 = std::pow(contact_list_.fast_motion() / drift.dt, 2);
+  std::array<std::int32_t, static_cast<std::size_t>(drift_chunk) * max_lanes> fast;
+  drift.fast = fast.data();
+  drift.fast_speed2 = std::pow(contact_list_.fast_motion() / drift.dt, 2);
   Drifted drifted;
   BlockMotion& motion = drifted.motion;
   for (int node = begin; node < end; node += drift_chunk) {
@@ -131,12 +131,12 @@ ForceField::Drifted ForceField::drift_nodes(const Block& block, int begin, int e
           .drift(lanes.x.data() + first, lanes.v.data() + first, chunk_end - node, block.n_lanes, drift);
     });
     motion.largest_speed2 = std::max(motion.largest_speed2, part.largest_speed2);
-    motion.common_speed2 = std::max(motion.common_speed2, std::min(part.largest_speed2, drift.brisk_speed2));
+    motion.common_speed2 = std::max(motion.common_speed2, std::min(part.largest_speed2, drift.fast_speed2));
     motion.checksum += part.checksum;
-    for (std::int32_t& found : std::span(brisk).first(part.n_brisk)) {
+    for (std::int32_t& found : std::span(fast).first(part.n_fast)) {
       found += node;
     }
-    note_fast_nodes(block, std::span(brisk).first(part.n_brisk), state, drift, drifted);
+    note_fast_nodes(block, std::span(fast).first(part.n_fast), state, drift, drifted);
     for (int lane = 0; lane < block.n_lanes; ++lane) {
       const int grain = block.grain[lane];
       if (grain >= 0) {

@@ -23,7 +23,7 @@ public:
   TableWriter(const std::filesystem::path& path, const std::vector<std::string>& columns,
               FileMode mode = FileMode::create);
   /// Goes on after the last row whose step is `last_step` or earlier; later rows and a torn one are removed. A missing
-  /// file is begun anew. \throws std::runtime_error when the file has other columns.
+  /// file is begun again. \throws std::runtime_error when the file has other columns.
   static TableWriter go_on(const std::filesystem::path& path, const std::vector<std::string>& columns,
                            std::int64_t last_step);
 

@@ -39,7 +39,7 @@ public:
   /// \throws std::runtime_error when the file exists (FileMode::create) or cannot be written.
   TrajectoryWriter(const std::filesystem::path& path, const Topology& topology, const TrajectoryOrigin& origin,
                    const TrajectoryOptions& options = {}, FileMode mode = FileMode::create);
-  /// Goes on with a file after its last frame up to `last_step`; later frames and a torn one are removed.
+  /// Continues a file after its last frame up to `last_step`; later frames and a torn one are removed.
   /// A file that was not closed (its run was killed) is copied frame by frame, which takes its size in disk space once
   /// more. \throws std::runtime_error when the file is missing, damaged, or of another packing.
   static TrajectoryWriter go_on(const std::filesystem::path& path, const Topology& topology, std::int64_t last_step,

@@ -28,7 +28,7 @@ class VtkSeries {
 public:
   /// Files NAME_STEP.vtp go beside `pvd`. \throws std::runtime_error when `pvd` exists (FileMode::create).
   VtkSeries(const std::filesystem::path& pvd, FileMode mode = FileMode::create);
-  /// Goes on with the frames up to `last_step`; the files of later ones are removed. \throws InputError when `pvd` is
+  /// Continues the frames up to `last_step`; the files of later ones are removed. \throws InputError when `pvd` is
   /// none of ours.
   static VtkSeries go_on(const std::filesystem::path& pvd, std::int64_t last_step);
 

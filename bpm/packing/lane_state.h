@@ -31,7 +31,7 @@ public:
   /// layout must outlive the state.
   LaneState(const Packing& packing, const LaneLayout& layout);
 
-  /// Begins anew with the layout as it is now: all grains undeformed at the origin, at rest.
+  /// Begins again with the layout as it is now: all grains undeformed at the origin, at rest.
   void reset(const Packing& packing);
   /// Puts the undeformed template, at rest, into the idle lanes of a block. They belong to no grain, but are moved with
   /// the others, and in a long shear a grain without neighbours may come apart.

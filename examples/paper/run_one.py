@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs one line of a plan, or goes on with it from its last checkpoint: run_one.py PLAN NAME OUT BOBA."""
+"""Runs one line of a plan, or continues it from its last checkpoint: run_one.py PLAN NAME OUT BOBA."""
 import csv
 import pathlib
 import subprocess

@@ -37,7 +37,7 @@ TEST_P(OnRanks, TheSameBits) {
 
 INSTANTIATE_TEST_SUITE_P(Cases, OnRanks,
                          ::testing::Values(OnRanksCase{"shear", {2, 3, 4, 7}}, OnRanksCase{"mixed", {2, 7}},
-                                           OnRanksCase{"stops", {2}}, OnRanksCase{"velocities", {3}},
+                                           OnRanksCase{"stops", {}}, OnRanksCase{"velocities", {3}},
                                            OnRanksCase{"compress", {2}}, OnRanksCase{"walls", {3}},
                                            OnRanksCase{"clamps", {2}}, OnRanksCase{"migrating", {2, 3, 4, 7}},
                                            OnRanksCase{"breaking", {2, 3, 7}}, OnRanksCase{"dealt", {2, 3, 4, 7}},

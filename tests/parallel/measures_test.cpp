@@ -94,8 +94,8 @@ TEST(MeasuresOnRanks, AreTheSameOnStoredFrames) {
   }
 }
 
-/// A rigid sphere has no hull: the rank that is dealt the fifth grain meets it, and all end with its message.
-TEST(MeasuresOnRanks, EndAllRanksWhenOneCannotMeasure) {
+/// A rigid sphere has no hull: all ranks refuse to measure it, before anything is written, and one tells why.
+TEST(MeasuresOnRanks, RefuseTogetherWhatAGrainCannotHave) {
   const TemporaryFolder folder;
   folder.file("scene.toml", small_scene + "\n[[template]]\nname = \"dot\"\nnodes = 1\n"
                                           "[[species]]\ntemplate = \"dot\"\ncount = 1\nalpha = 0.0\n");
@@ -105,7 +105,8 @@ TEST(MeasuresOnRanks, EndAllRanksWhenOneCannotMeasure) {
         boba_on(ranks, folder,
                 {"run", "scene.toml", "--output", out, "--quiet", "--set", "species.0.template=\"grain\"", "--set",
                  "measure=[{what = \"order\", neighbours = \"voronoi\"}]"});
-    expect_one_message(result, 2, "boba: rank " + std::to_string(4 % ranks) + ": grain 4: ");
+    expect_one_message(result, 2, "need 4 nodes and more; template \"dot\" has 1");
+    EXPECT_FALSE(std::filesystem::exists(folder / out));
   }
 }
 

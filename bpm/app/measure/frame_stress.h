@@ -12,7 +12,7 @@
 
 namespace boba {
 
-/// Evaluates the forces of stored frames anew, for their stress.
+/// Evaluates the forces of stored frames again, for their stress.
 ///
 /// sigma = -(1/V) sum (m v v + r_ij f_ij) over bonds and contacts. A run evaluates its damping with the velocities half
 /// a step before the frame, v(n-1/2) = v(n) - dt/(2m) f(n); these are found by iteration, so that the result is the

@@ -31,7 +31,7 @@ struct MeasureRunResult {
   std::filesystem::path folder;
   bool undeformed_known = true; ///< false: no frame shows the undeformed grains, so the baseline columns are empty
   bool velocity_known = true;   ///< false: no velocities are stored
-  std::string stored_stress;    ///< why the stress is the stored one; empty: the forces were evaluated anew
+  std::string stored_stress;    ///< why the stress is the stored one; empty: the forces were evaluated again
   std::string averages;         ///< lines for the terminal: quantity, mean, standard error
 };
 

@@ -49,7 +49,7 @@ public:
   /// written; RankError on all when there are several ranks.
   void add(const Snapshot& snapshot);
 
-  /// Forces evaluated anew: used for the stress instead of what the frames hold. Null: what the frames hold. With
+  /// Forces evaluated again: used for the stress instead of what the frames hold. Null: what the frames hold. With
   /// several ranks all are given one, and every frame whole.
   void set_frame_stress(std::shared_ptr<FrameStress> stress) { frame_stress_ = std::move(stress); }
 

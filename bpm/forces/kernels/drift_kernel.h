@@ -38,13 +38,13 @@ constexpr double nobody = 1e30;
 /// velocities answer to the last rounding, and grains creep.)
 template <class S, bool mapped, class Coordinate = typename S::Coordinate, class Real = typename S::Real>
 void drift_lanes(Coordinate* x, const Real* v, int n_nodes, const Drift& drift, int lane, typename S::V& speed2,
-                 typename S::V& checksum, std::int32_t& n_brisk) {
+                 typename S::V& checksum, std::int32_t& n_fast) {
   using V = typename S::V;
   using P = typename S::P;
   constexpr std::int64_t stride = S::stride;
   const V q = splat<V>(drift.quantum), dt = splat<V>(drift.dt);
   const V per_quantum = splat<V>(S::fixed_point ? 1.0 / drift.quantum : 1.0);
-  const V brisk_speed2 = splat<V>(drift.brisk != nullptr ? drift.brisk_speed2 : nobody);
+  const V fast_speed2 = splat<V>(drift.fast != nullptr ? drift.fast_speed2 : nobody);
   V residual_shift = splat<V>(drift.residual_shift);
   if constexpr (S::fixed_point) {
     residual_shift = load_doubles<V>(drift.lane_shift + lane);
@@ -85,8 +85,8 @@ void drift_lanes(Coordinate* x, const Real* v, int n_nodes, const Drift& drift, 
             splat<V>(drift.residual[2]) * p[2] + residual_shift;
     const V own_speed2 = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
     speed2 = larger(speed2, own_speed2);
-    if (__builtin_expect(any_above(own_speed2, brisk_speed2), 0)) {
-      drift.brisk[n_brisk++] = static_cast<std::int32_t>(node);
+    if (__builtin_expect(any_above(own_speed2, fast_speed2), 0)) {
+      drift.fast[n_fast++] = static_cast<std::int32_t>(node);
     }
   }
 }
@@ -98,9 +98,9 @@ DriftResult drift_block(Coordinate* x, const Real* v, int n_nodes, int n_lanes, 
     using S = decltype(storage);
     typename S::V speed2{}, checksum{};
     if (drift.mapped) {
-      drift_lanes<S, true>(x, v, n_nodes, drift, lane, speed2, checksum, result.n_brisk);
+      drift_lanes<S, true>(x, v, n_nodes, drift, lane, speed2, checksum, result.n_fast);
     } else {
-      drift_lanes<S, false>(x, v, n_nodes, drift, lane, speed2, checksum, result.n_brisk);
+      drift_lanes<S, false>(x, v, n_nodes, drift, lane, speed2, checksum, result.n_fast);
     }
     const double largest = largest_of(speed2);
     result.largest_speed2 = largest > result.largest_speed2 ? largest : result.largest_speed2;

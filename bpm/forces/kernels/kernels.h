@@ -102,17 +102,17 @@ struct Drift {
   std::uint64_t dither_seed;    ///< another one each step; mixed only
   int first_node;               ///< number of the first node in its grain; mixed only
   double lane_shift[max_lanes]; ///< residual_shift, with the lane's origin; mixed only
-  /// Numbers, from the first node of the call on, of nodes with any lane faster than sqrt(brisk_speed2) are written
+  /// Numbers, from the first node of the call on, of nodes with any lane faster than sqrt(fast_speed2) are written
   /// here, a node once for every register of its lanes at most; null: nobody asks.
-  std::int32_t* brisk;
-  double brisk_speed2; ///< of u, d^2/tau^2
+  std::int32_t* fast;
+  double fast_speed2; ///< of u, d^2/tau^2
 };
 
 /// What a drift saw: enough to know how long a contact list stays valid and whether the run has blown up.
 struct DriftResult {
   double largest_speed2; ///< of u, d^2/tau^2
   double checksum;       ///< a sum of all v^2: not finite when any velocity is not
-  std::int32_t n_brisk;  ///< how many were written down
+  std::int32_t n_fast;  ///< how many were written down
 };
 
 /// Position and velocity of a node that may touch another, copied together onto one cache line before the contact pass:

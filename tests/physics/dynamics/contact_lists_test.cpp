@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact lists in whole runs: those that are kept as long as they hold find what lists made anew at every step find.
+// Contact lists in whole runs: those that are kept as long as they hold find what lists made again at every step find.
 #include "bpm/dynamics/stepper.h"
 #include "bpm/dynamics/take_snapshot.h"
 #include "tests/physics/dynamics/nine_grains.h"
@@ -11,7 +11,7 @@
 namespace boba::test {
 namespace {
 
-// A list that lives for many steps and one that is made anew at every step find the same contacts: the same bits come
+// A list that lives for many steps and one that is made again at every step find the same contacts: the same bits come
 // out, while grains are sheared, squeezed and turned, the cell flips and single nodes are shot through the packing.
 TEST(ContactLists, ThatLiveLongMissNothing) {
   const std::pair<Remap, Material> cases[] = {

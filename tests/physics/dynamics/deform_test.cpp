@@ -123,7 +123,7 @@ TEST(Deform, FlipsOfAllTiltsChangeNoForce) {
 }
 
 TEST(Deform, HoldsNormalAndShearStresses) {
-  DeformStage stage{.time = 1500.0};
+  DeformStage stage{.time = 3000.0}; // after half of it one stress is still off by 5e-4
   for (int c = 0; c < 6; ++c) {
     stage.component[c].kind = Kind::stress;
     stage.component[c].stress = c < 3 ? -0.1 - 0.01 * c : 0.004 * (c - 4);
@@ -139,6 +139,10 @@ struct Balance {
   double work = 0.0, gained = 0.0; ///< k d^2
 };
 
+/// Small: at rest the energy of the violent start is off by 140 dt^2 k d^2 after 20 tau (0.0086, 0.0022 at 0.01,
+/// 0.005).
+constexpr double time_step = 0.0025;
+
 /// Without damping and with alpha = 0; all rates of the six components times `factor`.
 Balance balance_of(double factor) {
   DeformStage stage{.time = 20.0};
@@ -147,7 +151,7 @@ Balance balance_of(double factor) {
     stage.component[c].kind = Kind::strain;
     stage.component[c].path = {.duration = 20.0, .rate_from = factor * rates[c], .rate = factor * rates[c]};
   }
-  Stepper stepper(nine_grains(0.0), {.gamma = 0.0}, {.dt = 0.01});
+  Stepper stepper(nine_grains(0.0), {.gamma = 0.0}, {.dt = time_step});
   DeformDriver driver(stage);
   stepper.start();
   driver.begin(stepper);
@@ -171,9 +175,9 @@ Balance balance_of(double factor) {
   while (!driver.finished()) {
     const CellRates rates = driver.update(stepper);
     stepper.move_cell(rates);
-    balance.work += 0.5 * 0.01 * power_of(rates.gradient);
+    balance.work += 0.5 * time_step * power_of(rates.gradient);
     stepper.advance(Virial::full);
-    balance.work += 0.5 * 0.01 * power_of(rates.gradient);
+    balance.work += 0.5 * time_step * power_of(rates.gradient);
   }
   balance.gained += energy();
   return balance;
@@ -182,7 +186,7 @@ Balance balance_of(double factor) {
 /// What the cell does is the energy that the packing gains: dW = V sigma : grad v dt.
 TEST(Deform, TheCellsWorkIsTheEnergy) {
   EXPECT_NEAR(balance_of(0.0).gained, 0.0, 2e-3);
-  for (const double factor : {1.0, -1.0, 2.0}) {
+  for (const double factor : {1.0, -1.0, -2.0}) {
     const Balance balance = balance_of(factor);
     EXPECT_GT(std::abs(balance.gained), 0.1);
     EXPECT_NEAR(balance.work, balance.gained, 0.01 * std::abs(balance.gained) + 2e-3) << factor;

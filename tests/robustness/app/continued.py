@@ -68,7 +68,7 @@ pressure = 0.05
 
     def test_a_resumed_run_knows_it_too(self):
         self.prepare("--set", "material.k=0.5")
-        words = ["--set", "stage.0.strain=0.3", "--quiet"]
+        words = ["--set", "stage.0.strain=3", "--quiet"]
         self.assertEqual(self.boba("run", "next.toml", "--output", "whole", *words).returncode, 0)
         stopped = self.boba("run", "next.toml", "--output", "parts", *words, "--wall-time", "0.3")
         self.assertEqual(stopped.returncode, 75, stopped.stderr)

@@ -83,7 +83,13 @@ private:
         {"compress", {{"pressure", "0.1"}}},
         {"hold", {{"time", "1.0"}, {"pressure", "0.1"}}},
         {"shear", {{"rate", "1e-3"}, {"strain", "0.5"}, {"pressure", "0.1"}}},
-        {"press", {{"strain", "0.1"}}}};
+        {"press", {{"strain", "0.1"}}},
+        {"deform", {{"time", "1.0"}}},
+        {"uniaxial", {{"strain", "0.01"}, {"rate", "1e-3"}}},
+        {"oedometer", {{"strain", "0.01"}, {"rate", "1e-3"}}},
+        {"pure_shear", {{"strain", "0.01"}, {"rate", "1e-3"}}},
+        {"triaxial", {{"strain", "0.01"}, {"rate", "1e-3"}, {"confining_pressure", "0.1"}}},
+        {"biaxial", {{"strain", "0.01"}, {"rate", "1e-3"}, {"confining_pressure", "0.1"}}}};
     const auto found = of_stage.find(section_.kind);
     auto needed = found == of_stage.end() ? std::map<std::string, std::string>{} : found->second;
     if (key_ == "normalised_pressure") {

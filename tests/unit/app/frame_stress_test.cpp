@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stress of a frame, from forces evaluated anew, against the pressure tensor that LAMMPS printed for it.
+// The stress of a frame, from forces evaluated again, against the pressure tensor that LAMMPS printed for it.
 #include "bpm/app/measure/frame_stress.h"
 #include "bpm/dynamics/simulation.h"
 #include "bpm/stages/shear.h"

@@ -176,7 +176,7 @@ class Program(unittest.TestCase):
             self.assertIn(word, refused.stderr)
             self.assertFalse((self.folder / "wrong").exists())
         again = boba_program(self.folder, "measure", "run")
-        self.assertEqual(again.returncode, 1)  # the run's own tables are there
+        self.assertEqual(again.returncode, 2)  # the run's own tables are there
         self.assertIn("stress.csv", again.stderr)
         self.assertEqual(boba_program(self.folder, "measure", "nothing").returncode, 2)
         self.assertEqual(boba_program(self.folder, "measure", "run", "--what", "colour").returncode, 2)
