@@ -12,6 +12,9 @@
 
 namespace boba {
 
+/// Defined in programs outside the tree, by find_package(boba): the share/boba of the installation that they link.
+extern const char* const linked_data_folder __attribute__((weak));
+
 namespace {
 
 constexpr const char* running_program = "/proc/self/exe";
@@ -43,9 +46,10 @@ std::filesystem::path program_folder() {
 }
 
 std::filesystem::path data_folder() {
-  const std::filesystem::path beside = program_folder().parent_path() / "share/boba";
-  const std::filesystem::path installed = BOBA_DATA_FOLDER;
-  return !std::filesystem::exists(beside) && std::filesystem::exists(installed) ? installed : beside;
+  if (&linked_data_folder != nullptr) {
+    return linked_data_folder;
+  }
+  return program_folder().parent_path() / "share/boba";
 }
 
 std::filesystem::path program_beside(const std::string& name) {

@@ -10,8 +10,8 @@ namespace boba {
 /// Folder of the running program. \throws std::filesystem::filesystem_error when the system does not tell it.
 std::filesystem::path program_folder();
 
-/// Folder of tables and scripts: ../share/boba beside the running program's folder; where that does not exist (a
-/// program outside the tree that links Boba's libraries), the share/boba of the installation that was configured.
+/// Folder of tables and scripts: ../share/boba beside the running program's folder; for a program outside the tree, the
+/// share/boba of the installation that it was linked with (find_package(boba)).
 std::filesystem::path data_folder();
 
 /// The program `name` in the folder of the running one. \throws std::runtime_error when it is not there.
