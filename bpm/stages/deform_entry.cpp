@@ -13,13 +13,18 @@ namespace {
 
 using Kind = ComponentDrive::Kind;
 
+/// Of a strain that a scene prescribes, 1/tau: beyond it the cell turns over in a few steps.
+constexpr double largest_rate = 0.1;
+
 /// The keys of one component: each begins with its name.
 std::vector<SceneKey> component_keys(const std::string& c) {
   const bool is_length = c[0] == c[1];
   const std::string what = is_length ? "length along " + c.substr(1) : "tilt " + c;
   return {
-      real_key(c + "_rate", "1/tau", -0.1, 0.1, "", "rate of strain of the " + what + ", at the stage's end"),
-      real_key(c + "_rate_from", "1/tau", -0.1, 0.1, "", "rate at its beginning; without it the same"),
+      real_key(c + "_rate", "1/tau", -largest_rate, largest_rate, "",
+               "rate of strain of the " + what + ", at the stage's end"),
+      real_key(c + "_rate_from", "1/tau", -largest_rate, largest_rate, "",
+               "rate at its beginning; without it the same"),
       real_key(c + "_strain", "", -1e6, 1e6, "",
                "strain to reach at the end, at a constant rate; with " + c + "_rate it sets the stage's length"),
       real_key(c + "_amplitude", "", -10.0, 10.0, "", "of cycles of strain (period, cycles, wave); not 0"),
@@ -161,6 +166,19 @@ DeformEntry::DeformEntry(const SceneTable& table) : LoadingEntry(table) {
   for (ComponentDrive& drive : stage_.component) { // a strain to reach, without a rate
     if (drive.kind == Kind::strain && drive.path.kind == PrescribedStrain::Kind::ramp && std::isnan(drive.path.rate)) {
       drive.path.rate_from = drive.path.rate = drive.path.amplitude / stage_.time;
+    }
+  }
+  check_rates(table);
+}
+
+void DeformEntry::check_rates(const SceneTable& table) const {
+  for (int c = 0; c < 6; ++c) {
+    const ComponentDrive& drive = stage_.component[c];
+    if (drive.kind == Kind::strain && drive.path.fastest() > largest_rate) {
+      const std::string key =
+          cell_components[c] + std::string(drive.path.kind == PrescribedStrain::Kind::ramp ? "_strain" : "_amplitude");
+      table.fail(key, fmt::format("takes a rate of {:g} 1/tau in {:g} tau; at most {:g} is allowed",
+                                  drive.path.fastest(), stage_.time, largest_rate));
     }
   }
 }

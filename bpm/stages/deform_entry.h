@@ -43,6 +43,7 @@ public:
 private:
   void read_component(const SceneTable& table, int component);
   double read_time(const SceneTable& table) const;
+  void check_rates(const SceneTable& table) const;
 };
 
 /// Keys of loadings: what strains mean; stresses relative to the grains' modulus; gain and cap of the servos.

@@ -112,7 +112,7 @@ struct Drift {
 struct DriftResult {
   double largest_speed2; ///< of u, d^2/tau^2
   double checksum;       ///< a sum of all v^2: not finite when any velocity is not
-  std::int32_t n_fast;  ///< how many were written down
+  std::int32_t n_fast;   ///< how many were written down
 };
 
 /// Position and velocity of a node that may touch another, copied together onto one cache line before the contact pass:

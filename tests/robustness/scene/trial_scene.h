@@ -84,7 +84,7 @@ private:
         {"hold", {{"time", "1.0"}, {"pressure", "0.1"}}},
         {"shear", {{"rate", "1e-3"}, {"strain", "0.5"}, {"pressure", "0.1"}}},
         {"press", {{"strain", "0.1"}}},
-        {"deform", {{"time", "1.0"}}},
+        {"deform", {{"time", "1.0"}, {key_.starts_with("xx") ? "yy_stress" : "xx_stress", "0.0"}}},
         {"uniaxial", {{"strain", "0.01"}, {"rate", "1e-3"}}},
         {"oedometer", {{"strain", "0.01"}, {"rate", "1e-3"}}},
         {"pure_shear", {{"strain", "0.01"}, {"rate", "1e-3"}}},
