@@ -95,6 +95,15 @@ private:
     if (key_ == "normalised_pressure") {
       needed.erase("pressure");
     }
+    const std::string component = key_.substr(0, 2);
+    if (key_.ends_with("_amplitude")) {
+      needed.erase("time");
+      needed["period"] = "1000.0";
+    } else if (key_.ends_with("_rate_from")) {
+      needed[component + "_rate"] = "0.01";
+    } else if (key_.ends_with("_stress_from")) {
+      needed[component + "_stress"] = "0.0";
+    }
     return needed;
   }
 
