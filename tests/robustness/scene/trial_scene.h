@@ -99,6 +99,8 @@ private:
     if (key_.ends_with("_amplitude")) {
       needed.erase("time");
       needed["period"] = "1000.0";
+    } else if (key_.ends_with("_strain")) {
+      needed["time"] = "1e8"; // the rate stays small
     } else if (key_.ends_with("_rate_from")) {
       needed[component + "_rate"] = "0.01";
     } else if (key_.ends_with("_stress_from")) {
