@@ -2,6 +2,7 @@
 #include "bpm/app/table_observer.h"
 
 #include "bpm/dynamics/simulation.h"
+#include "bpm/packing/cell_components.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +36,7 @@ std::vector<std::string> run_table_columns(const TableParts& parts) {
     columns.insert(columns.end() - 1, "broken_bonds");
   }
   if (parts.stress) {
-    for (const char* component : {"xx", "yy", "zz", "xy", "xz", "yz"}) {
+    for (const char* component : cell_components) {
       columns.push_back(std::string("stress_") + component + "_k/d");
     }
   }

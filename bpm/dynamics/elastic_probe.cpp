@@ -2,6 +2,7 @@
 #include "bpm/dynamics/elastic_probe.h"
 
 #include "bpm/dynamics/scoped_threads.h"
+#include "bpm/packing/cell_components.h"
 
 #include <cmath>
 
@@ -87,9 +88,8 @@ double affine_bulk_modulus(MovingPacking& moving) {
 }
 
 double affine_stiffness(MovingPacking& moving, int c) {
-  constexpr std::array<std::array<int, 2>, 6> place = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
   Matrix3 gradient = Matrix3::Zero();
-  gradient(place[c][0], place[c][1]) = 1.0;
+  gradient(component_place[c][0], component_place[c][1]) = 1.0;
   const auto [larger, smaller] = probe(moving, gradient, probe_strain, Virial::full);
   return (smaller.component[c] / smaller.volume - larger.component[c] / larger.volume) / (2.0 * probe_strain);
 }

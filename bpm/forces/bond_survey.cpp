@@ -71,19 +71,29 @@ std::vector<kernels::NodePair> ForceField::broken_bonds(const LaneState& state, 
   return broken;
 }
 
-std::vector<int> ForceField::whole_bonds(const LaneState& state, int grain) const {
-  const kernels::Network network = network_of_grain_[grain]->view();
-  std::vector<int> n_whole(network.n_nodes, 0);
+namespace {
+
+/// Per node of a grain: how many bonds its network gives it.
+std::vector<int> bonds_of_nodes(const NetworkData& data) {
+  const kernels::Network network = data.view();
+  std::vector<int> n_bonds(network.n_nodes, 0);
   for (int i = 0; i < network.n_nodes; ++i) {
     for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
-      ++n_whole[i];
-      ++n_whole[network.bonds[b].other];
+      ++n_bonds[i];
+      ++n_bonds[network.bonds[b].other];
     }
   }
-  for (const ImageBond& bond : network_of_grain_[grain]->image_bonds()) {
-    ++n_whole[bond.i];
-    ++n_whole[bond.j];
+  for (const ImageBond& bond : data.image_bonds()) {
+    ++n_bonds[bond.i];
+    ++n_bonds[bond.j];
   }
+  return n_bonds;
+}
+
+} // namespace
+
+std::vector<int> ForceField::whole_bonds(const LaneState& state, int grain) const {
+  std::vector<int> n_whole = bonds_of_nodes(*network_of_grain_[grain]);
   for (const kernels::NodePair& pair : broken_bonds(state, grain)) {
     --n_whole[pair.i];
     --n_whole[pair.j];
@@ -92,14 +102,14 @@ std::vector<int> ForceField::whole_bonds(const LaneState& state, int grain) cons
 }
 
 std::vector<double> ForceField::damage(const LaneState& state, int grain) const {
-  const std::vector<int> whole = whole_bonds(state, grain);
-  std::vector<double> damage(whole.size(), 0.0);
+  const std::vector<int> n_bonds = bonds_of_nodes(*network_of_grain_[grain]);
+  std::vector<double> damage(n_bonds.size(), 0.0);
   for (const kernels::NodePair& pair : broken_bonds(state, grain)) {
     damage[pair.i] += 1.0;
     damage[pair.j] += 1.0;
   }
   for (std::size_t i = 0; i < damage.size(); ++i) {
-    damage[i] /= std::max(1.0, damage[i] + whole[i]);
+    damage[i] /= std::max(1, n_bonds[i]);
   }
   return damage;
 }

@@ -97,11 +97,15 @@ public:
   /// Frame 0 .. n_frames() - 1, or counted from the end: -1 is the last. Positions are unwrapped.
   /// \throws InputError for a frame that is not there.
   Snapshot snapshot(std::int64_t frame) const;
+  /// Strain of such a frame, without reading its nodes.
+  double strain_of(std::int64_t frame) const;
   /// The frame of this step. \throws InputError when there is none.
   std::int64_t frame_of_step(std::int64_t step) const;
 
 private:
   struct Impl;
+  /// Its number from the begin. \throws InputError when it is not there.
+  std::int64_t frame_number(std::int64_t frame) const;
   std::unique_ptr<Impl> impl_;
   std::vector<std::int64_t> steps_;
   Topology topology_;

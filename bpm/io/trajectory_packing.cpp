@@ -75,7 +75,7 @@ Networks networks_of(const Topology& topology, const Snapshot& first, const std:
 
 } // namespace
 
-Packing read_trajectory_packing(const std::filesystem::path& file, int frame, std::optional<double> alpha) {
+Packing read_trajectory_packing(const std::filesystem::path& file, int frame) {
   const TrajectoryReader reader(file);
   const Topology& topology = reader.topology();
   Snapshot state = reader.snapshot(frame);
@@ -89,8 +89,8 @@ Packing read_trajectory_packing(const std::filesystem::path& file, int frame, st
   Networks networks = networks_of(topology, reader.snapshot(0), file);
   packing.templates = std::move(networks.templates);
   for (int g = 0; g < topology.n_grains(); ++g) {
-    packing.grains.push_back({networks.number[topology.template_index[g]], topology.species[g],
-                              alpha.value_or(topology.alpha[g]), topology.molecule[g]});
+    packing.grains.push_back(
+        {networks.number[topology.template_index[g]], topology.species[g], topology.alpha[g], topology.molecule[g]});
   }
   packing.id = topology.id;
   packing.position = std::move(state.position);

@@ -96,11 +96,21 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : impl_(st
   });
 }
 
-Snapshot TrajectoryReader::snapshot(std::int64_t frame) const {
+std::int64_t TrajectoryReader::frame_number(std::int64_t frame) const {
   const std::int64_t index = frame < 0 ? frame + n_frames() : frame;
   if (index < 0 || index >= n_frames()) {
     refuse_file(impl_->file, fmt::format("has no frame {}; it holds {} complete frames", frame, n_frames()));
   }
+  return index;
+}
+
+double TrajectoryReader::strain_of(std::int64_t frame) const {
+  const std::int64_t index = frame_number(frame);
+  return as_input_error([&] { return impl_->frame_of<double>(strain, index).at(0); });
+}
+
+Snapshot TrajectoryReader::snapshot(std::int64_t frame) const {
+  const std::int64_t index = frame_number(frame);
   return as_input_error([&] {
     const Impl& in = *impl_;
     Snapshot snapshot;

@@ -41,6 +41,11 @@ DeformDriver::DeformDriver(const DeformStage& stage) : stage_(stage), pressure_(
   }
 }
 
+/// Largest rate of the leading component, 1/tau; 0 without one.
+double DeformDriver::leading_rate() const {
+  return leading_ < 0 ? 0.0 : stage_.component[leading_].path.fastest();
+}
+
 bool DeformDriver::has(Kind kind) const {
   return std::ranges::any_of(stage_.component, [kind](const ComponentDrive& drive) { return drive.kind == kind; });
 }
@@ -52,8 +57,7 @@ void DeformDriver::begin(Stepper& stepper) {
   first_volume_ = stepper.box().volume();
   least_distance_ = half_of_largest_grain(stepper.packing());
   check_path(stepper);
-  const double rate = leading_ < 0 ? 0.0 : stage_.component[leading_].path.fastest();
-  pressure_.begin(stepper, rate);
+  pressure_.begin(stepper, leading_rate());
   const std::array<double, 6> present = stress_of(stepper.moving());
   for (int c = 0; c < 6; ++c) {
     const ComponentDrive& drive = stage_.component[c];
@@ -64,11 +68,11 @@ void DeformDriver::begin(Stepper& stepper) {
 
 /// The gain of each servo from the packing's affine stiffness for its component, as that of the barostat.
 void DeformDriver::settle_gains(Stepper& stepper) {
-  const double rate = leading_ < 0 ? 0.0 : stage_.component[leading_].path.fastest();
   for (int c = 0; c < 6; ++c) {
     if (stage_.component[c].kind == Kind::stress) {
       const double stiffness = stage_.servo.gain ? 1.0 : affine_stiffness(stepper.moving(), c);
-      gain_[c] = barostat_gain(stage_.servo, {stiffness / 3.0, sound_crossing(stepper.moving(), stiffness), rate});
+      gain_[c] =
+          barostat_gain(stage_.servo, {stiffness / 3.0, sound_crossing(stepper.moving(), stiffness), leading_rate()});
     }
   }
 }
@@ -246,17 +250,14 @@ double DeformDriver::shear_rate() const {
 }
 
 StageProgress DeformDriver::progress(const Stepper& stepper) const {
+  if (leading_ < 0) {
+    return progress_in_time(steps_, stage_.time, stepper.options().dt);
+  }
   StageProgress progress;
   progress.done = steps_.share_done();
-  if (leading_ >= 0) {
-    progress.driven = std::string(cell_components[leading_]) + " strain";
-    progress.target = stage_.component[leading_].path.at_end();
-    progress.value = stage_.component[leading_].path.at(steps_.share_done());
-  } else {
-    progress.driven = "time";
-    progress.target = stage_.time;
-    progress.value = static_cast<double>(steps_.done()) * stepper.options().dt;
-  }
+  progress.driven = std::string(cell_components[leading_]) + " strain";
+  progress.target = stage_.component[leading_].path.at_end();
+  progress.value = stage_.component[leading_].path.at(steps_.share_done());
   return progress;
 }
 

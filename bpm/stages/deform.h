@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/dynamics/stage_driver.h"
+#include "bpm/packing/cell_components.h"
 #include "bpm/stages/held_pressure.h"
 #include "bpm/stages/prescribed_strain.h"
 #include "bpm/stages/timed_steps.h"
@@ -12,11 +13,6 @@
 #include <vector>
 
 namespace boba {
-
-/// The components of the cell: three lengths and three tilts, in the order of Totals::stress.
-inline constexpr std::array<const char*, 6> cell_components = {"xx", "yy", "zz", "xy", "xz", "yz"};
-/// Row and column of a component in the cell matrix.
-inline constexpr std::array<std::array<int, 2>, 6> component_place = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
 
 /// What a strain means for the cell.
 enum class StrainMeasure {
@@ -76,6 +72,7 @@ public:
 
 private:
   using Kind = ComponentDrive::Kind;
+  double leading_rate() const;
   bool has(Kind kind) const;
   void note_held(const std::array<double, 6>& stress);
   void settle_gains(Stepper& stepper);

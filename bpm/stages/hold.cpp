@@ -17,12 +17,7 @@ CellRates HoldDriver::update(Stepper& stepper) {
 }
 
 StageProgress HoldDriver::progress(const Stepper& stepper) const {
-  StageProgress progress;
-  progress.done = steps_.share_done();
-  progress.driven = "time";
-  progress.target = stage_.time;
-  progress.value = static_cast<double>(steps_.done()) * stepper.options().dt;
-  return progress;
+  return progress_in_time(steps_, stage_.time, stepper.options().dt);
 }
 
 void HoldDriver::archive(Archive& archive) {

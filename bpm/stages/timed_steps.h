@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bpm/archive/archive.h"
+#include "bpm/dynamics/observer.h"
 #include "bpm/dynamics/step_count.h"
 
 #include <cstdint>
@@ -30,5 +31,15 @@ public:
 private:
   std::int64_t n_steps_ = 0, steps_done_ = 0;
 };
+
+/// Progress of a stage that nothing but time drives. \param duration of the stage, tau  \param dt tau
+inline StageProgress progress_in_time(const TimedSteps& steps, double duration, double dt) {
+  StageProgress progress;
+  progress.done = steps.share_done();
+  progress.driven = "time";
+  progress.target = duration;
+  progress.value = static_cast<double>(steps.done()) * dt;
+  return progress;
+}
 
 } // namespace boba

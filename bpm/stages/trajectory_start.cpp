@@ -51,7 +51,7 @@ TrajectoryStart::TrajectoryStart(const SceneTable& table, const StartFiles& file
 
 Packing TrajectoryStart::make(const StartContext& context) const {
   context.narrate("reading " + file_.string());
-  Packing packing = read_trajectory_packing(file_, frame_, std::nullopt);
+  Packing packing = read_trajectory_packing(file_, frame_);
   const std::string stored = told_alphas(packing);
   if (material_.alpha || material_.poisson) {
     const double alpha = context.alpha(material_);

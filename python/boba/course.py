@@ -5,7 +5,7 @@ import numpy as np
 from . import look
 
 
-def _path(strain):
+def path_of(strain):
     """Strain added up along the way, whatever its direction."""
     return np.concatenate([[0.0], np.cumsum(np.abs(np.diff(strain)))])
 
@@ -31,7 +31,7 @@ def abscissa(run, table=None):
         rows[-1] = True
     if not turns_back(whole["strain"]):
         return rows, table["strain"][rows], look.quantity("strain", "strain")
-    x = np.interp(table["step"], whole["step"], _path(whole["strain"]))
+    x = np.interp(table["step"], whole["step"], path_of(whole["strain"]))
     return rows, x[rows], r"strain along the way $\int|\mathrm{d}\gamma|$"
 
 

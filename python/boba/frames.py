@@ -82,7 +82,12 @@ class Frame:
     @property
     def grains(self) -> list[np.ndarray]:
         """The unwrapped nodes of each grain, arrays of shape (n, 3), d."""
-        return [self.positions[a:b] for a, b in zip(self.first_node[:-1], self.first_node[1:])]
+        return self._by_grain(self.positions)
+
+    @property
+    def placed_grains(self) -> list[np.ndarray]:
+        """The nodes of each grain, whole, with its centre in the cell, arrays of shape (n, 3), d."""
+        return self._by_grain(self.whole_grains())
 
     @property
     def grain_of_node(self) -> np.ndarray:
@@ -103,6 +108,9 @@ class Frame:
     def whole_grains(self) -> np.ndarray:
         """Positions of all nodes, shape (nodes, 3), d: each grain whole, moved so that its centre is in the cell."""
         return self.positions + self.shift_into_cell(self.grain_centres)[self.grain_of_node]
+
+    def _by_grain(self, nodes: np.ndarray) -> list[np.ndarray]:
+        return [nodes[a:b] for a, b in zip(self.first_node[:-1], self.first_node[1:])]
 
     def __repr__(self) -> str:
         return (

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 
 from . import look
-from .pictures import cell_edges, cross_section_nodes, fit, grain_colours, hull_of, placed_grains
+from .pictures import cell_edges, cross_section_nodes, fit, grain_colours, hull_of
 from .render import Picture, view_axes
 from .run import open_run
 
@@ -92,14 +92,6 @@ def pressures(run, frame):
     return -frame.grain_stress[:, :3].sum(axis=1) / 3.0 / volume
 
 
-def species_names(run, n):
-    try:
-        given = run.scene.values.get("species", [])
-    except (OSError, ValueError):
-        given = []
-    return [given[k].get("name", f"species {k}") if k < len(given) else f"species {k}" for k in range(n)]
-
-
 class Colouring:
     """A colour for each grain (0 to 255), and what the legend needs: names with colours, or a range with a label."""
 
@@ -109,7 +101,7 @@ class Colouring:
         if chosen.colour == "grain":
             self.of_grain = grain_colours(n)
         elif chosen.colour == "species":
-            self._by_name(frame.species, species_names(run, int(frame.species.max()) + 1))
+            self._by_name(frame.species, run.species_names(int(frame.species.max()) + 1))
         elif chosen.colour == "pressure":
             self._by_value(pressures(run, frame), "P_k/d", chosen.range)
         else:
@@ -174,7 +166,7 @@ def draw(run, frame, chosen):
         hulls = []
     else:
         axes = view_axes(chosen.view, (0.0, 1.0, 0.0) if abs(chosen.view[0]) + abs(chosen.view[2]) > 0 else (0, 0, 1))
-        grains = placed_grains(frame)
+        grains = frame.placed_grains
         hulls = [(g, hull_of(grains[g])) for g in wanted] if chosen.hulls else []
         points = np.concatenate([grains[g] for g in wanted])
         grain = np.repeat(wanted, [len(grains[g]) for g in wanted])

@@ -21,11 +21,6 @@ def normal_colours(normals):
     return 255 * (0.5 + 0.5 * np.asarray(normals))
 
 
-def placed_grains(frame):
-    """Each grain whole, moved so that its centre is in the cell."""
-    return [x + frame.shift_into_cell(centre) for x, centre in zip(frame.grains, frame.grain_centres)]
-
-
 def fit(axes, points, margin):
     seen = points @ axes.T
     low, high = seen.min(axis=0) - margin, seen.max(axis=0) + margin
@@ -45,7 +40,7 @@ def cell_edges(frame, axis=None, place=0.5):
 
 def grains_picture(frame, path, direction=(0.5, 0.35, 1.0), width=900):
     """All nodes as spheres of diameter d, a colour a grain."""
-    grains = placed_grains(frame)
+    grains = frame.placed_grains
     points = np.concatenate(grains)
     colours = np.repeat(grain_colours(len(grains)), [len(g) for g in grains], axis=0)
     axes = view_axes(direction)

@@ -86,6 +86,14 @@ class Run:
         """The scene that was run, with what --set changed. \\throws FileNotFoundError; ValueError."""
         return read_scene(self.folder / "scene.toml")
 
+    def species_names(self, n: int) -> list[str]:
+        """Names of species 0 to n - 1: those of the scene where it has any, else "species 0" and so on."""
+        try:
+            listed = [entry for entry in self.scene.values.get("species", []) if isinstance(entry, dict)]
+        except (OSError, ValueError):
+            listed = []
+        return [str(listed[s]["name"]) if s < len(listed) and "name" in listed[s] else f"species {s}" for s in range(n)]
+
     @property
     def stages(self) -> list[Stage]:
         """The stages of the scene, in their order."""

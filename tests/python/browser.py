@@ -60,7 +60,7 @@ class Browser:
             time.sleep(0.05)
 
     def settle(self):
-        """Waits until what was asked for has been painted."""
+        """Waits until the browser has painted the page as it is now."""
         self.driver.execute_async_script(
             "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 30)))"
         )

@@ -52,7 +52,7 @@ void use_trajectory(const std::filesystem::path& path) {
   if (reader.n_frames() == 0) {
     return;
   }
-  Simulation simulation(read_trajectory_packing(path, -1, std::nullopt), Material{}, SimulationOptions{});
+  Simulation simulation(read_trajectory_packing(path, -1), Material{}, SimulationOptions{});
   try {
     simulation.evaluate();
   } catch (const std::runtime_error&) { // forces that are no numbers, said so

@@ -43,7 +43,7 @@ void check_window(const std::array<double, 2>& window, const TrajectoryReader& r
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
   std::int64_t n_inside = 0;
   for (std::int64_t frame = 0; frame < reader.n_frames(); ++frame) {
-    const double strain = reader.snapshot(frame).strain;
+    const double strain = reader.strain_of(frame);
     lowest = std::min(lowest, strain);
     highest = std::max(highest, strain);
     n_inside += strain > window[0] && strain < window[1] ? 1 : 0;

@@ -39,15 +39,15 @@ public:
     }
     return options_.every_strain || frame % options_.every == 0;
   }
-  bool takes(const Snapshot& snapshot) {
+  bool takes(double strain) {
     if (only_ || !options_.every_strain) {
       return true;
     }
     // A hair less than the interval: strains are sums of many steps.
-    if (std::abs(snapshot.strain - last_strain_) < *options_.every_strain * (1.0 - 1e-6)) {
+    if (std::abs(strain - last_strain_) < *options_.every_strain * (1.0 - 1e-6)) {
       return false;
     }
-    last_strain_ = snapshot.strain;
+    last_strain_ = strain;
     return true;
   }
 
@@ -71,7 +71,7 @@ frame_stress(const MeasureRunOptions& options, const std::optional<Scene>& scene
     return {nullptr, "the run has walls or clamps, which frames do not hold"};
   }
   try {
-    Packing packing = read_trajectory_packing(trajectory_of(options.run), 0, std::nullopt);
+    Packing packing = read_trajectory_packing(trajectory_of(options.run), 0);
     return {std::make_shared<FrameStress>(std::move(packing), scene->material, scene->options.dt, ranks), ""};
   } catch (const InputError& error) {
     return {nullptr, error.what()};
@@ -83,8 +83,8 @@ std::shared_ptr<const FrameRest> frame_rest(const MeasureRunOptions& options, co
   if (!scene) {
     throw InputError("measure: --relaxed needs the material, but the trajectory names no scene to take it from");
   }
-  return std::make_shared<const FrameRest>(read_trajectory_packing(trajectory_of(options.run), 0, std::nullopt),
-                                           scene->material, scene->options.dt, *options.plan.rest);
+  return std::make_shared<const FrameRest>(read_trajectory_packing(trajectory_of(options.run), 0), scene->material,
+                                           scene->options.dt, *options.plan.rest);
 }
 
 /// The tables, and what there is to say of them.
@@ -146,11 +146,13 @@ void measure_frames(const MeasureRunOptions& options, const TrajectoryReader& re
     if (!choice.may_take(frame)) {
       continue;
     }
-    Snapshot snapshot;
-    ranks.collectively([&] { snapshot = reader.snapshot(frame); });
-    if (!choice.takes(snapshot)) {
+    double strain = 0.0;
+    ranks.collectively([&] { strain = reader.strain_of(frame); });
+    if (!choice.takes(strain)) {
       continue;
     }
+    Snapshot snapshot;
+    ranks.collectively([&] { snapshot = reader.snapshot(frame); });
     const auto told = [&](const std::exception& error) {
       return fmt::format("frame {} (step {}): {}; the tables hold the frames before it", frame, snapshot.step,
                          error.what());

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..course import path_of
 from ..run import Run
 from ..table import Table, unit_of
 
@@ -159,12 +160,11 @@ def plain(values: Any) -> list[float | None]:
 
 def accumulated_strain(strain: np.ndarray) -> np.ndarray:
     """Strain run through, forth and back counted alike, from 0; nan before anything shears. Shape (rows,)."""
-    moves = np.abs(np.diff(strain, prepend=strain[:1]))
-    path = np.cumsum(moves)
-    first = np.flatnonzero(moves > 0)
-    if len(first) == 0:
+    path = path_of(strain)
+    moving = np.flatnonzero(path > 0)
+    if len(moving) == 0:
         return np.full(len(strain), np.nan)
-    path[: max(first[0] - 1, 0)] = np.nan
+    path[: max(moving[0] - 1, 0)] = np.nan
     return path
 
 

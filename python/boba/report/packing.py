@@ -127,22 +127,6 @@ def _quantities(values: list[dict[str, np.ndarray]], species: list[str], has_fac
     return names
 
 
-def _species_names(run: Run, species: np.ndarray) -> list[str]:
-    try:
-        listed = [entry for entry in run.scene.values.get("species", []) if isinstance(entry, dict)]
-    except (OSError, ValueError):
-        listed = []
-    return [
-        str(listed[s]["name"]) if s < len(listed) and "name" in listed[s] else f"species {s}"
-        for s in range(int(species.max(initial=-1)) + 1)
-    ]
-
-
-def _placed(frame: Frame) -> list[np.ndarray]:
-    """Nodes of each grain, whole, with its centre in the cell."""
-    return [x + shift for x, shift in zip(frame.grains, frame.shift_into_cell(frame.grain_centres))]
-
-
 def _bounds(frame: Frame) -> np.ndarray:
     corners = np.array([[i, j, k] for k in (0, 1) for j in (0, 1) for i in (0, 1)]) @ frame.box.T + frame.origin
     points = np.concatenate([corners, frame.grain_centres + frame.shift_into_cell(frame.grain_centres)])
@@ -186,7 +170,7 @@ def _outlined(run: Run, number: int, vertices: int, cache: dict[Any, Any]) -> tu
     key = (number, vertices)
     if key not in cache:
         frame, radius = run.frames[number], node_radius(run)
-        outlines = [outline_of(nodes, vertices, radius) for nodes in _placed(frame)]
+        outlines = [outline_of(nodes, vertices, radius) for nodes in frame.placed_grains]
         frame.positions, frame.velocities = np.empty((0, 3)), None
         cache[key] = (frame, outlines)
     return cache[key]
@@ -230,7 +214,7 @@ def packing_of(
         entry = _frame_data(frame, outlines, marks, scale)
         entry["values"] = {key: plain(column) for key, column in own.items()}
         data.append(entry)
-    species = _species_names(run, last.species)
+    species = run.species_names(int(last.species.max(initial=-1)) + 1)
     return {
         "grains": [int(m) for m in molecules],
         "species": [int(s) for s in last.species],

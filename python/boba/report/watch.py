@@ -6,6 +6,7 @@ import argparse
 import hashlib
 import http.server
 import pathlib
+import signal
 import socket
 import sys
 import threading
@@ -154,11 +155,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         print(f"boba watch: --port {chosen.port}: {error.strerror}", file=sys.stderr)
         return 1
+    ends = {signal.SIGINT, signal.SIGTERM}
+    signal.pthread_sigmask(signal.SIG_BLOCK, ends)  # from the line below on, either ends the command in one way
+    threading.Thread(target=server.serve_forever, daemon=True).start()
     print(f"{server.address} shows {', '.join(chosen.folders)}; Ctrl-C ends it", flush=True)
-    try:
-        server.serve_forever(poll_interval=0.2)
-    except KeyboardInterrupt:
-        print()
-    finally:
-        server.server_close()
+    signal.sigwait(ends)
+    print()
+    server.shutdown()
+    server.server_close()
     return 0

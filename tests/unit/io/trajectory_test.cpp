@@ -119,7 +119,7 @@ TEST(Trajectory, APackingStartsWithoutTheStreamingOfItsFrame) {
   TrajectoryWriter writer(path, small_topology(), small_origin(), {true, 0});
   write_frames(writer, {5, 9});
   const Snapshot frame = small_snapshot(9);
-  const Packing packing = read_trajectory_packing(path, -1, std::nullopt);
+  const Packing packing = read_trajectory_packing(path, -1);
   for (std::size_t node = 0; node < frame.position.size(); ++node) {
     const double streaming = 0.018 * (frame.position[node][1] + 2.0); // rate times height above the cell's origin
     EXPECT_NEAR(packing.velocity[node][0], frame.velocity[node][0] - streaming, 1e-13);

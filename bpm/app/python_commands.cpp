@@ -17,12 +17,12 @@ std::filesystem::path python_starter() {
   return installed;
 }
 
-/// A command that python/boba/NAME.py carries out; all arguments, --help among them, are its own.
-CommandBody python_command(CLI::App& app, const std::string& name) {
+/// A command that the Python module carries out; all arguments, --help among them, are its own.
+CommandBody python_command(CLI::App& app) {
   app.prefix_command();
   app.set_help_flag();
-  return [&app, name]() -> ExitCode {
-    std::vector<std::string> arguments = {python_starter().string(), name};
+  return [&app]() -> ExitCode {
+    std::vector<std::string> arguments = {python_starter().string(), app.get_name()};
     const std::vector<std::string> rest = app.remaining();
     arguments.insert(arguments.end(), rest.begin(), rest.end());
     replace_process("/usr/bin/python3", arguments);
@@ -32,11 +32,19 @@ CommandBody python_command(CLI::App& app, const std::string& name) {
 } // namespace
 
 CommandBody add_plot_command(CLI::App& app) {
-  return python_command(app, "plot");
+  return python_command(app);
 }
 
 CommandBody add_picture_command(CLI::App& app) {
-  return python_command(app, "picture");
+  return python_command(app);
+}
+
+CommandBody add_report_command(CLI::App& app) {
+  return python_command(app);
+}
+
+CommandBody add_watch_command(CLI::App& app) {
+  return python_command(app);
 }
 
 } // namespace boba
