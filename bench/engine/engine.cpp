@@ -89,7 +89,7 @@ void node_volumes(benchmark::State& state) {
   Stepper& stepper = stepper_of(
       {static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), 2.0, 1, Precision::full, fastest_rate});
   for (auto _ : state) {
-    stepper.volumes_only();
+    stepper.forces().bonds().volumes_only(stepper.moving().state);
   }
   count_node_steps(state, stepper);
 }

@@ -58,7 +58,7 @@ std::string describe_alternation(const Block& block, std::int64_t step, double d
       step, grain, block.n_grains(), moved, dt);
 }
 
-std::string describe_stretched_bond(const ForceField::Stretch& stretch, std::int64_t step, double dt) {
+std::string describe_stretched_bond(const Stretch& stretch, std::int64_t step, double dt) {
   return fmt::format(
       "blow-up at step {}: a bond of node {} of grain {} is stretched to {:.3g} times its length, more than "
       "the {} allowed. Likely cause: {}.",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/forces/force_field.h"
+#include "bpm/forces/bond_survey.h"
 #include "bpm/laws/material.h"
 #include "bpm/packing/lane_state.h"
 
@@ -23,6 +23,6 @@ std::string describe_torn_grain(double share, std::int64_t step, double dt);
 std::string describe_alternation(const Block& block, std::int64_t step, double dt, double moved);
 
 /// The same for a bond that is stretched beyond `largest_bond_stretch`.
-std::string describe_stretched_bond(const ForceField::Stretch& stretch, std::int64_t step, double dt);
+std::string describe_stretched_bond(const Stretch& stretch, std::int64_t step, double dt);
 
 } // namespace boba

@@ -86,11 +86,11 @@ void check_alternation(const MovingPacking& moving) {
   }
 }
 
-ForceField::Stretch largest_stretch(const MovingPacking& moving) {
+Stretch largest_stretch(const MovingPacking& moving) {
   const Ranks& ranks = moving.ranks();
-  ForceField::Stretch largest;
+  Stretch largest;
   if (!moving.layout.grains().empty()) {
-    largest = moving.forces.largest_stretch(moving.state, moving.cell.box());
+    largest = moving.forces.survey(moving.state).largest_stretch(moving.cell.box());
   }
   const double not_a_number = std::isnan(largest.ratio) ? 1.0 : 0.0;
   double values[2] = {not_a_number, not_a_number > 0.0 ? 0.0 : largest.ratio};
@@ -102,7 +102,7 @@ ForceField::Stretch largest_stretch(const MovingPacking& moving) {
 }
 
 void check_bonds(const MovingPacking& moving) {
-  const ForceField::Stretch stretch = largest_stretch(moving);
+  const Stretch stretch = largest_stretch(moving);
   if (!(stretch.ratio <= largest_bond_stretch)) {
     throw BlowUp(describe_stretched_bond(stretch, moving.step, moving.options.dt));
   }

@@ -23,7 +23,7 @@ void recentre_grains(MovingPacking& moving);
 void check_alternation(const MovingPacking& moving);
 
 /// The bond with the largest r / r0 of all ranks' grains; of several the one whose grain comes first. Collective.
-ForceField::Stretch largest_stretch(const MovingPacking& moving);
+Stretch largest_stretch(const MovingPacking& moving);
 
 /// \throws BlowUp when that bond is longer than `largest_bond_stretch` allows. Collective.
 void check_bonds(const MovingPacking& moving);

@@ -64,7 +64,7 @@ Probe probe(MovingPacking& moving, const Matrix3& gradient, double step, Virial 
   const ScopedThreads threads(moving.options.threads);
   const LaneState before = moving.state;
   const std::vector<Vector3> x = positions_of(moving);
-  const ForceField::Results results = moving.forces.results();
+  const ForceSums sums = moving.forces.sums();
   const Walls walls = moving.forces.walls();
   Probe probe;
   probe.larger = virial_when_deformed(moving, x, Matrix3::Identity() + step * gradient, what);
@@ -72,7 +72,7 @@ Probe probe(MovingPacking& moving, const Matrix3& gradient, double step, Virial 
   // Nothing of the state has moved but these; the list of the next step is built from scratch and gives the same
   // forces.
   moving.state.take(before);
-  moving.forces.set_results(results);
+  moving.forces.set_sums(sums);
   moving.forces.walls() = walls;
   moving.forces.contact_list().invalidate();
   return probe;

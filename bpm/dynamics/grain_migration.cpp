@@ -82,7 +82,7 @@ void move_grains(MovingPacking& moving, std::vector<int> owner) {
   if (!moving.ranks().is_distributed()) {
     return;
   }
-  const ForceField::Results results = moving.forces.shared_results();
+  const ForceSums sums = moving.forces.shared_sums();
   std::vector<Vector3> origins = moving.state.origins();
   share_grains(moving, origins);
   const int rank = moving.ranks().rank();
@@ -121,7 +121,7 @@ void move_grains(MovingPacking& moving, std::vector<int> owner) {
     }
   }
   moving.forces.layout_changed();
-  moving.forces.set_results(results);
+  moving.forces.set_sums(sums);
 }
 
 } // namespace boba

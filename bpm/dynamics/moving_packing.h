@@ -26,7 +26,7 @@ struct MovingPacking {
   double time() const { return static_cast<double>(step) * options.dt; }
   double n_nodes() const { return static_cast<double>(packing.first_nodes().back()); }
   /// Over all nodes, k d^2.
-  double bond_energy() const { return forces.bond_energy(state, cell.box()); }
+  double bond_energy() const { return forces.survey(state).energy(cell.box()); }
 
   Packing packing; ///< as it was at the start; rank 0 alone keeps ids, positions and velocities
   Material material;

@@ -81,7 +81,7 @@ void check_motion(const MovingPacking& moving) {
     check_cell(moving.cell);
     check_ends(moving);
   });
-  const ForceField::Stretch stretch = largest_stretch(moving);
+  const Stretch stretch = largest_stretch(moving);
   if (!(stretch.ratio <= largest_bond_stretch)) {
     refuse(fmt::format("a bond of node {} of grain {} is {:.3g} times as long as at rest; allowed: {:g}", stretch.node,
                        stretch.grain, stretch.ratio, largest_bond_stretch));

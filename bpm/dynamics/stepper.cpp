@@ -152,7 +152,7 @@ void Stepper::move_cell(const CellRates& rates) {
 
 void Stepper::deform_cell(const Matrix3& gradient, const Matrix3& of_positions) {
   // A periodic template's bonds name their images by the cell vectors it was made with: its cell is never flipped.
-  const bool may_flip = !moving_.forces.has_periodic_template();
+  const bool may_flip = !moving_.forces.bonds().has_periodic_template();
   if (moving_.cell.deform(gradient, of_positions, moving_.options.dt, may_flip)) {
     moving_.forces.contact_list().invalidate();
   }

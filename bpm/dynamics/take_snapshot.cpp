@@ -32,8 +32,8 @@ Totals totals_of(const MovingPacking& moving) {
   const ContactTotals contacts = moving.forces.contact_totals();
   totals.elastic_energy = moving.bond_energy() + contacts.energy;
   totals.largest_overlap = contacts.largest_overlap;
-  if (moving.forces.bonds_break()) {
-    totals.n_broken_bonds = moving.forces.n_broken_bonds(moving.state);
+  if (moving.forces.bonds().can_break()) {
+    totals.n_broken_bonds = moving.forces.survey(moving.state).n_broken();
   }
   return totals;
 }
@@ -75,7 +75,7 @@ void gather_parts(const MovingPacking& moving, Simulation::Parts parts, Snapshot
 
 void add_damage(const MovingPacking& moving, Snapshot& snapshot) {
   for (const int g : moving.layout.grains()) {
-    const std::vector<double> of_grain = moving.forces.damage(moving.state, g);
+    const std::vector<double> of_grain = moving.forces.survey(moving.state).damage(g);
     snapshot.damage.insert(snapshot.damage.end(), of_grain.begin(), of_grain.end());
   }
   gather_rows(moving, 1, snapshot.damage);
@@ -110,7 +110,7 @@ Snapshot take_snapshot(const MovingPacking& moving, Simulation::Parts parts) {
   } else {
     gather_parts(moving, parts, snapshot);
   }
-  if (moving.forces.bonds_break()) {
+  if (moving.forces.bonds().can_break()) {
     add_damage(moving, snapshot);
   }
   share_grains(moving, snapshot.grain_centre);

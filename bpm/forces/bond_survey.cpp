@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Passes over all bonds that are taken now and then, in plain scalars.
-#include "bpm/forces/force_field.h"
+#include "bpm/forces/bond_survey.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,43 +35,6 @@ void for_each_bond(const NetworkData& data, const LaneLayout& layout, const Lane
   }
 }
 
-} // namespace
-
-double ForceField::bond_energy(const LaneState& state, const Box& box) const {
-  const BondLaw law = bond_law(material_);
-  std::vector<double> energy(layout_.n_grains(), 0.0);
-#pragma omp parallel for schedule(dynamic, 8)
-  for (const int g : layout_.grains()) {
-    const Breaking& breaking = layout_.blocks()[layout_.block_of(g)].breaking;
-    const BreakingBondLaw breaking_law{law, breaking.in_tension_only, breaking.smooth};
-    for_each_bond(*network_of_grain_[g], layout_, state, box, g, [&](const SurveyedBond& bond) {
-      energy[g] +=
-          breaking.is_possible() ? breaking_law.energy(bond.r, bond.r0, bond.memory) : law.energy(bond.r, bond.r0);
-    });
-  }
-  distribution_.ranks->share_rows(energy, 1, distribution_.ownership);
-  double total = 0.0;
-  for (const double e : energy) { // grain by grain: the same sum for any number of threads
-    total += e;
-  }
-  return total;
-}
-
-std::vector<kernels::NodePair> ForceField::broken_bonds(const LaneState& state, int grain) const {
-  const kernels::Network network = network_of_grain_[grain]->view();
-  std::vector<kernels::NodePair> broken;
-  for (int i = 0; layout_.remembers(grain) && i < network.n_nodes; ++i) {
-    for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
-      if (!(BreakingBondLaw::if_whole(1.0, state.bond_memory(grain, b)) > 0.0)) {
-        broken.push_back({i, network.bonds[b].other});
-      }
-    }
-  }
-  return broken;
-}
-
-namespace {
-
 /// Per node of a grain: how many bonds its network gives it.
 std::vector<int> bonds_of_nodes(const NetworkData& data) {
   const kernels::Network network = data.view();
@@ -92,19 +54,52 @@ std::vector<int> bonds_of_nodes(const NetworkData& data) {
 
 } // namespace
 
-std::vector<int> ForceField::whole_bonds(const LaneState& state, int grain) const {
+std::vector<kernels::NodePair> broken_bonds(const NetworkData& data, const LaneLayout& layout, const LaneState& state,
+                                            int grain) {
+  const kernels::Network network = data.view();
+  std::vector<kernels::NodePair> broken;
+  for (int i = 0; layout.remembers(grain) && i < network.n_nodes; ++i) {
+    for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
+      if (!(BreakingBondLaw::if_whole(1.0, state.bond_memory(grain, b)) > 0.0)) {
+        broken.push_back({i, network.bonds[b].other});
+      }
+    }
+  }
+  return broken;
+}
+
+double BondSurvey::energy(const Box& box) const {
+  std::vector<double> energy(layout_.n_grains(), 0.0);
+#pragma omp parallel for schedule(dynamic, 8)
+  for (const int g : layout_.grains()) {
+    const Breaking& breaking = layout_.blocks()[layout_.block_of(g)].breaking;
+    const BreakingBondLaw breaking_law{law_, breaking.in_tension_only, breaking.smooth};
+    for_each_bond(*network_of_grain_[g], layout_, state_, box, g, [&](const SurveyedBond& bond) {
+      energy[g] +=
+          breaking.is_possible() ? breaking_law.energy(bond.r, bond.r0, bond.memory) : law_.energy(bond.r, bond.r0);
+    });
+  }
+  distribution_.ranks->share_rows(energy, 1, distribution_.ownership);
+  double total = 0.0;
+  for (const double e : energy) { // grain by grain: the same sum for any number of threads
+    total += e;
+  }
+  return total;
+}
+
+std::vector<int> BondSurvey::whole_bonds(int grain) const {
   std::vector<int> n_whole = bonds_of_nodes(*network_of_grain_[grain]);
-  for (const kernels::NodePair& pair : broken_bonds(state, grain)) {
+  for (const kernels::NodePair& pair : broken_bonds(*network_of_grain_[grain], layout_, state_, grain)) {
     --n_whole[pair.i];
     --n_whole[pair.j];
   }
   return n_whole;
 }
 
-std::vector<double> ForceField::damage(const LaneState& state, int grain) const {
+std::vector<double> BondSurvey::damage(int grain) const {
   const std::vector<int> n_bonds = bonds_of_nodes(*network_of_grain_[grain]);
   std::vector<double> damage(n_bonds.size(), 0.0);
-  for (const kernels::NodePair& pair : broken_bonds(state, grain)) {
+  for (const kernels::NodePair& pair : broken_bonds(*network_of_grain_[grain], layout_, state_, grain)) {
     damage[pair.i] += 1.0;
     damage[pair.j] += 1.0;
   }
@@ -114,19 +109,19 @@ std::vector<double> ForceField::damage(const LaneState& state, int grain) const 
   return damage;
 }
 
-std::int64_t ForceField::n_broken_bonds(const LaneState& state) const {
+std::int64_t BondSurvey::n_broken() const {
   std::int64_t n = 0;
   for (const int g : layout_.grains()) {
-    n += static_cast<std::int64_t>(broken_bonds(state, g).size());
+    n += static_cast<std::int64_t>(broken_bonds(*network_of_grain_[g], layout_, state_, g).size());
   }
   return distribution_.ranks->sum(n);
 }
 
-ForceField::Stretch ForceField::largest_stretch(const LaneState& state, const Box& box) const {
+Stretch BondSurvey::largest_stretch(const Box& box) const {
   std::vector<Stretch> largest(layout_.n_grains());
 #pragma omp parallel for schedule(dynamic, 8)
   for (const int g : layout_.grains()) {
-    for_each_bond(*network_of_grain_[g], layout_, state, box, g, [&](const SurveyedBond& bond) {
+    for_each_bond(*network_of_grain_[g], layout_, state_, box, g, [&](const SurveyedBond& bond) {
       if (!(bond.r / bond.r0 <= largest[g].ratio)) { // also true for NaN
         largest[g] = {bond.r / bond.r0, g, bond.node};
       }

@@ -232,7 +232,7 @@ CellRates DeformDriver::update(Stepper& stepper) {
   deformation_ = map * deformation_;
   Box next = stepper.box();
   next.set_h(map * next.h());
-  if (!stepper.forces().has_periodic_template()) {
+  if (!stepper.forces().bonds().has_periodic_template()) {
     next.flip();
   }
   check_faces(stepper, next, steps_.share_done());

@@ -203,8 +203,8 @@ void run_migrating(Packing packing, const Ranks& ranks, Bits& bits) {
   bits.add("strain", stepper.strain());
   for (int g = 0; g < stepper.packing().n_grains(); ++g) {
     double whole = 0.0;
-    for (const int n :
-         stepper.layout().holds(g) ? stepper.forces().whole_bonds(stepper.moving().state, g) : std::vector<int>{}) {
+    for (const int n : stepper.layout().holds(g) ? stepper.forces().survey(stepper.moving().state).whole_bonds(g)
+                                                 : std::vector<int>{}) {
       whole += 0.5 * n;
     }
     whole = ranks.largest(whole);

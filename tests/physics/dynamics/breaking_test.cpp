@@ -40,7 +40,7 @@ std::map<std::int64_t, int> whole_bonds_in(const std::filesystem::path& path) {
 std::vector<int> whole_bonds_of(const Stepper& stepper) {
   std::vector<int> all;
   for (int g = 0; g < stepper.packing().n_grains(); ++g) {
-    const std::vector<int> of_grain = stepper.forces().whole_bonds(stepper.moving().state, g);
+    const std::vector<int> of_grain = stepper.forces().survey(stepper.moving().state).whole_bonds(g);
     all.insert(all.end(), of_grain.begin(), of_grain.end());
   }
   return all;

@@ -186,7 +186,7 @@ TEST(OtherContactLaw, ForcesAreTheDerivativeOfTheEnergy) {
   };
   const auto energy = [&] {
     return evaluated([&](ForceField& forces, LaneState& state) {
-      return forces.contact_totals().energy + forces.bond_energy(state, packing.box);
+      return forces.contact_totals().energy + forces.survey(state).energy(packing.box);
     });
   };
   EXPECT_GT(evaluated([](ForceField& forces, LaneState&) { return forces.contact_totals().energy; }), 1e-3);
