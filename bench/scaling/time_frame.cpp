@@ -39,7 +39,7 @@ std::string time_frame(const Stepper& stepper, const Ranks& ranks, int n_frames)
   const Snapshot snapshot = take_snapshot(stepper.moving(), parts);
   const auto measured = [&](const std::vector<std::string>& names) {
     MeasurePlan plan;
-    plan.kinds = measure_kinds(names);
+    choose_measures(plan, names);
     plan.facet_sensitivity = true;
     plan.neighbours = NeighbourRule::voronoi;
     return best_of(n_frames, ranks,

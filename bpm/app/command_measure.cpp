@@ -22,7 +22,7 @@ struct MeasureArguments {
 };
 
 ExitCode measure_stored_frames(MeasureArguments a, const Ranks& ranks) {
-  ranks.collectively([&] { a.options.plan.kinds = measure_kinds(a.what); });
+  ranks.collectively([&] { choose_measures(a.options.plan, a.what); });
   a.options.plan.neighbours = a.neighbours == "voronoi" ? NeighbourRule::voronoi : NeighbourRule::solid_angle;
   if (a.relaxed) {
     a.options.plan.rest = a.rest_time;

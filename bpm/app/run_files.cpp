@@ -44,7 +44,7 @@ std::set<std::string> names_of_any_run() {
   append<std::string>(names, {"trajectory.h5", "dump.lammpstrj", averages_name});
   append(names, vtk_names);
   MeasurePlan all_kinds;
-  all_kinds.kinds = measure_kinds({"all"});
+  choose_measures(all_kinds, {"all"});
   all_kinds.facet_sensitivity = true;
   append(names, measure_names_of(all_kinds));
   return {names.begin(), names.end()};

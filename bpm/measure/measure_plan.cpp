@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/measure/measure_plan.h"
 
+#include "bpm/measure/outside_measure.h"
+
 #include <array>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,20 +27,27 @@ constexpr std::array<std::pair<const char*, MeasureKind>, 7> kinds = {{
 
 std::vector<std::string> measure_names() {
   std::vector<std::string> names;
-  names.reserve(kinds.size());
   for (const auto& [name, kind] : kinds) {
     names.emplace_back(name);
+  }
+  for (const OutsideMeasureEntry& entry : outside_measures()) {
+    names.push_back(entry.name);
   }
   return names;
 }
 
-std::set<MeasureKind> measure_kinds(const std::vector<std::string>& names) {
-  std::set<MeasureKind> chosen;
+void choose_measures(MeasurePlan& plan, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     bool known = name == "all";
     for (const auto& [kind_name, kind] : kinds) {
       if (name == "all" || name == kind_name) {
-        chosen.insert(kind);
+        plan.kinds.insert(kind);
+        known = true;
+      }
+    }
+    for (const OutsideMeasureEntry& entry : outside_measures()) {
+      if (name == "all" || name == entry.name) {
+        plan.outside.insert(entry.name);
         known = true;
       }
     }
@@ -47,7 +56,6 @@ std::set<MeasureKind> measure_kinds(const std::vector<std::string>& names) {
           fmt::format("measure: '{}' is not known; there are all, {}", name, fmt::join(measure_names(), ", ")));
     }
   }
-  return chosen;
 }
 
 } // namespace boba

@@ -23,6 +23,7 @@ enum class NeighbourRule { solid_angle, voronoi };
 /// Which measures are taken, and how.
 struct MeasurePlan {
   std::set<MeasureKind> kinds;
+  std::set<std::string> outside; ///< names of measures that the program brings of its own (outside_measure.h)
   measure::PackingFractionOptions packing_fraction;
   measure::FacetOptions facets;
   bool facet_sensitivity = false; ///< facets also at other thresholds, into a table of their own
@@ -38,6 +39,7 @@ struct MeasurePlan {
   static constexpr int fewest_nodes_of_hull = 4;
 
   bool has(MeasureKind kind) const { return kinds.contains(kind); }
+  bool is_empty() const { return kinds.empty() && outside.empty(); }
   /// Order and motion look at neighbours by the grains' volumes.
   bool needs_hull_radii() const {
     return neighbours == NeighbourRule::voronoi && (has(MeasureKind::order) || has(MeasureKind::motion));
@@ -50,11 +52,11 @@ struct MeasurePlan {
 };
 
 /// The names that the command line and scenes use: stress, packing-fraction, shape, scattering, order, contacts,
-/// motion.
+/// motion, and those of measures that were added.
 std::vector<std::string> measure_names();
 
-/// Kinds from their names; "all" means every one.
+/// Adds the measures of these names to a plan; "all" means every one.
 /// \throws std::invalid_argument for another name, with the names there are.
-std::set<MeasureKind> measure_kinds(const std::vector<std::string>& names);
+void choose_measures(MeasurePlan& plan, const std::vector<std::string>& names);
 
 } // namespace boba

@@ -77,11 +77,11 @@ MeasurePlan read_measure_plan(const SceneTable& table, const Scene& scene) {
     names.push_back(name);
   }
   try {
-    plan.kinds = measure_kinds(names);
+    choose_measures(plan, names);
   } catch (const std::invalid_argument& error) {
     table.fail("what", error.what());
   }
-  if (plan.kinds.empty()) {
+  if (plan.is_empty()) {
     table.fail("what", "names no measure");
   }
   plan.neighbours =
@@ -112,12 +112,14 @@ MeasurePlan read_measure_plan(const SceneTable& table, const Scene& scene) {
 
 void read_measures(const SceneTables& tables, Scene& scene) {
   std::set<MeasureKind> taken;
+  std::set<std::string> taken_outside;
   for (const SceneTable& table : tables.list("measure")) {
     const MeasurePlan plan = read_measure_plan(table, scene);
-    for (const MeasureKind kind : plan.kinds) {
-      if (!taken.insert(kind).second) {
-        table.fail("what", "names a measure that another [[measure]] takes already; each has one set of tables");
-      }
+    const auto is_taken = [](const auto& wanted, auto& before) {
+      return std::ranges::any_of(wanted, [&](const auto& measure) { return !before.insert(measure).second; });
+    };
+    if (is_taken(plan.kinds, taken) || is_taken(plan.outside, taken_outside)) {
+      table.fail("what", "names a measure that another [[measure]] takes already; each has one set of tables");
     }
     scene.measures.push_back({plan, read_interval(table)});
   }

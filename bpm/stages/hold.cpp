@@ -20,11 +20,6 @@ StageProgress HoldDriver::progress(const Stepper& stepper) const {
   return progress_in_time(steps_, stage_.time, stepper.options().dt);
 }
 
-void HoldDriver::archive(Archive& archive) {
-  archive.object("steps", steps_);
-  archive.object("pressure", pressure_);
-}
-
 SceneSection HoldEntry::section() {
   return {"stage", "hold", true, "A fixed cell, or a held pressure, for a time.",
           joined({required(above_key("time", "tau", 0.0, 1e12, "", "how long"))},

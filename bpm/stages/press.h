@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/dynamics/stage_driver.h"
 #include "bpm/stages/stage.h"
-#include "bpm/stages/timed_steps.h"
+#include "bpm/stages/timed_driver.h"
 
 namespace boba {
 
@@ -18,7 +17,7 @@ struct PressStage {
 };
 
 /// Squeezes (or, with clamps, pulls) a specimen along z between two walls or two clamped ends.
-class PressDriver : public StageDriver {
+class PressDriver : public TimedDriver {
 public:
   explicit PressDriver(const PressStage& stage) : stage_(stage) {}
 
@@ -26,9 +25,6 @@ public:
   void begin(Stepper& stepper) override;
   bool needs_pressure() const override { return false; }
   CellRates update(Stepper& stepper) override;
-  bool finished() const override { return steps_.finished(); }
-  std::int64_t steps_left(const Stepper&) const override { return steps_.left(); }
-  bool may_end(const Stepper&) const override { return steps_.left() == 1; }
   double shear_rate() const override { return 0.0; }
   void end(Stepper& stepper) override;
   StageProgress progress(const Stepper& stepper) const override;
@@ -42,7 +38,6 @@ private:
   PressStage stage_;
   double height_ = 0.0; ///< between the ends at the start, d
   double dt_ = 0.0;
-  TimedSteps steps_;
 };
 
 /// A [[stage]] with `type = "press"`.

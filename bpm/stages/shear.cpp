@@ -29,11 +29,6 @@ StageProgress ShearDriver::progress(const Stepper& stepper) const {
   return progress;
 }
 
-void ShearDriver::archive(Archive& archive) {
-  archive.object("steps", steps_);
-  archive.object("pressure", pressure_);
-}
-
 SceneSection ShearEntry::section() {
   return {"stage", "shear", true, "Simple shear, of itself in x with gradient y.",
           joined({required(real_key("rate", "1/tau", -0.1, 0.1, "", "shear rate, not 0; negative shears backwards")),

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/dynamics/stage_driver.h"
-#include "bpm/stages/held_pressure.h"
 #include "bpm/stages/pressure_keys.h"
-#include "bpm/stages/timed_steps.h"
+#include "bpm/stages/stage.h"
+#include "bpm/stages/timed_pressure_driver.h"
 
 namespace boba {
 
@@ -16,28 +15,18 @@ struct ShearStage {
   std::optional<Barostat> barostat;
 };
 
-class ShearDriver : public StageDriver {
+class ShearDriver : public TimedPressureDriver {
 public:
-  explicit ShearDriver(const ShearStage& stage) : stage_(stage), pressure_(stage.barostat) {}
+  explicit ShearDriver(const ShearStage& stage) : TimedPressureDriver(stage.barostat), stage_(stage) {}
 
   std::string name() const override { return "shear"; }
   void begin(Stepper& stepper) override;
-  bool needs_pressure() const override { return pressure_.is_held(); }
   CellRates update(Stepper& stepper) override;
-  bool finished() const override { return steps_.finished(); }
-  std::int64_t steps_left(const Stepper&) const override { return steps_.left(); }
-  bool may_end(const Stepper&) const override { return steps_.left() == 1; }
   double shear_rate() const override { return stage_.rate; }
-  void end(Stepper&) override {}
   StageProgress progress(const Stepper& stepper) const override;
-  std::string report() const override { return pressure_.is_held() ? pressure_.report().text() : ""; }
-  bool has_missed() const override { return pressure_.has_missed(); }
-  void archive(Archive& archive) override;
 
 private:
   ShearStage stage_;
-  TimedSteps steps_;
-  HeldPressure pressure_;
 };
 
 /// A [[stage]] with `type = "shear"`.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <bpm/stages/stage_registry.h>
-#include <bpm/stages/timed_steps.h>
+#include <bpm/stages/timed_driver.h>
 
 /// Shears the cell to and fro at constant volume: strain = amplitude sin(2 pi t / period), for whole cycles.
 struct Oscillation {
@@ -12,7 +12,7 @@ struct Oscillation {
 };
 
 /// What the stage does around each step.
-class OscillateDriver : public boba::StageDriver {
+class OscillateDriver : public boba::TimedDriver {
 public:
   explicit OscillateDriver(const Oscillation& stage) : stage_(stage) {}
 
@@ -20,11 +20,7 @@ public:
   void begin(boba::Stepper& stepper) override;
   bool needs_pressure() const override { return false; }
   boba::CellRates update(boba::Stepper& stepper) override;
-  bool finished() const override { return steps_.finished(); }
-  std::int64_t steps_left(const boba::Stepper&) const override { return steps_.left(); }
-  bool may_end(const boba::Stepper&) const override { return steps_.left() == 1; }
   double shear_rate() const override;
-  void end(boba::Stepper&) override {}
   boba::StageProgress progress(const boba::Stepper& stepper) const override;
   void archive(boba::Archive& archive) override;
 
@@ -32,7 +28,6 @@ private:
   double strain_after(std::int64_t steps) const;
 
   Oscillation stage_;
-  boba::TimedSteps steps_;
   double dt_ = 0.0; ///< tau
 };
 

@@ -25,8 +25,8 @@ void check_between(const char* name, double value, double lowest, double highest
 
 void check_plan(const MeasurePlan& plan) {
   constexpr double largest = std::numeric_limits<double>::max();
-  if (plan.kinds.empty()) {
-    throw InputError("measure: nothing is asked for; --what names the measures");
+  if (plan.is_empty()) {
+    throw InputError("measure: --what names no measure");
   }
   check_between("--points", static_cast<double>(plan.packing_fraction.n_points), 1.0, 1e15, false);
   if (plan.packing_fraction.target_error) {

@@ -61,7 +61,7 @@ private:
 std::pair<std::shared_ptr<FrameStress>, std::string>
 frame_stress(const MeasureRunOptions& options, const std::optional<Scene>& scene, const Ranks& ranks) {
   if (options.stored_stress) {
-    return {nullptr, "it was asked for"};
+    return {nullptr, "--stored-stress was given"};
   }
   if (!scene) {
     return {nullptr, "the trajectory names no scene to take the material from"};

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <numbers>
 #include <numeric>
+#include <set>
+#include <stdexcept>
 #include <utility>
 
 namespace boba {
@@ -70,6 +73,7 @@ MeasureTables::MeasureTables(std::filesystem::path folder, const Topology& topol
   for (int g = 0; g < topology_.n_grains(); ++g) {
     nominal_volume_ += nominal_volume(static_cast<int>(topology_.first_node[g + 1] - topology_.first_node[g]));
   }
+  outside_ = make_outside_measures(plan_.outside);
   if (opening == Opening::now) {
     open(last_step);
   }
@@ -77,10 +81,10 @@ MeasureTables::MeasureTables(std::filesystem::path folder, const Topology& topol
 
 void MeasureTables::open(std::int64_t last_step) {
   std::filesystem::create_directories(folder_);
-  for (const auto& [name, columns] : tables_of(plan_)) {
-    const std::filesystem::path path = folder_ / (name + ".csv");
-    tables_.emplace(name, mode_ == FileMode::append ? TableWriter::go_on(path, columns, last_step)
-                                                    : TableWriter(path, columns, mode_));
+  for (const MeasureTable& table : tables_of(plan_)) {
+    const std::filesystem::path path = folder_ / (table.name + ".csv");
+    tables_.emplace(table.name, mode_ == FileMode::append ? TableWriter::go_on(path, table.columns, last_step)
+                                                          : TableWriter(path, table.columns, mode_));
   }
   is_open_ = true;
 }
@@ -134,6 +138,18 @@ std::vector<MeasureTable> MeasureTables::tables_of(const MeasurePlan& plan) {
         {"non_affine_square_d2", "d2min_mean_d2", "changed_share", "lost_per_grain", "gained_per_grain"});
   table(motion, "grain_motion",
         {"grain", "displacement_x_d", "displacement_y_d", "displacement_z_d", "d2min_d2", "lost", "gained"});
+  for (const auto& measure : make_outside_measures(plan.outside)) {
+    for (const MeasureTable& outside : measure->tables()) {
+      tables.push_back({outside.name, frame_columns});
+      tables.back().columns.insert(tables.back().columns.end(), outside.columns.begin(), outside.columns.end());
+    }
+  }
+  std::set<std::string> names;
+  for (const MeasureTable& written : tables) {
+    if (!names.insert(written.name).second) {
+      throw std::invalid_argument(fmt::format("measure: two measures write a table '{}'", written.name));
+    }
+  }
   return tables;
 }
 
@@ -194,6 +210,7 @@ void MeasureTables::write_frame(Frame& frame) {
   if (plan_.has(motion)) {
     add_motion(frame);
   }
+  add_outside(frame);
   if (!is_open_) {
     open(-1);
     for (const auto& [table, step, values] : std::exchange(waiting_, {})) {
@@ -300,6 +317,26 @@ void MeasureTables::add_shape(const Frame& frame) {
   note("volume_mean_d3", frame.snapshot, volume.mean);
   note("asphericity_mean", frame.snapshot, asphericity.mean);
   note("facets_mean", frame.snapshot, *row[4]);
+}
+
+void MeasureTables::add_outside(const Frame& frame) {
+  for (const auto& measure : outside_) {
+    const std::vector<MeasureTable> tables = measure->tables();
+    measure->add(frame.snapshot, topology_, [&](const std::string& name, const Row& values) {
+      const auto table = std::ranges::find(tables, name, &MeasureTable::name);
+      if (table == tables.end() || table->columns.size() != values.size()) {
+        throw std::invalid_argument(fmt::format("measure: a row of {} values for table '{}' fits none of the measure's "
+                                                "own tables",
+                                                values.size(), name));
+      }
+      write(name, frame.snapshot, values);
+      for (std::size_t c = 0; table->is_averaged && c < values.size(); ++c) {
+        if (values[c]) {
+          note(table->columns[c], frame.snapshot, *values[c]);
+        }
+      }
+    });
+  }
 }
 
 } // namespace boba

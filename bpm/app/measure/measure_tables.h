@@ -9,6 +9,7 @@
 #include "bpm/io/table.h"
 #include "bpm/measure/measure_plan.h"
 #include "bpm/measure/non_affine.h"
+#include "bpm/measure/outside_measure.h"
 #include "bpm/measure/stress.h"
 
 #include <filesystem>
@@ -18,12 +19,6 @@
 #include <vector>
 
 namespace boba {
-
-/// A table of a measure: NAME.csv and its columns, the step first.
-struct MeasureTable {
-  std::string name;
-  std::vector<std::string> columns;
-};
 
 /// Measures frames and writes what was found into the tables of one folder.
 ///
@@ -94,6 +89,7 @@ private:
   void add_order(const Frame& frame);
   void add_contacts(const Frame& frame);
   void add_motion(const Frame& frame);
+  void add_outside(const Frame& frame);
   void find_neighbours(Frame& frame) const;
   measure::NeighbourLists neighbours_of(const Frame& frame, const std::vector<Vector3>& centres) const;
   /// Mean over the grains of what their undeformed template has; unknown when one of them is.
@@ -112,6 +108,7 @@ private:
   std::filesystem::path folder_;
   const Topology topology_;
   MeasurePlan plan_;
+  std::vector<std::unique_ptr<const OutsideMeasure>> outside_; ///< on rank 0
   const Ranks& ranks_;
   std::shared_ptr<FrameStress> frame_stress_;
   std::shared_ptr<const FrameRest> frame_rest_;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program of examples/extend: a stage from outside the tree runs, is documented, checked and continued like any
-// other.
+// The program of examples/extend: a stage, a contact law and a measure from outside the tree run, are documented,
+// checked and continued like any other.
 #include "tests/support/run_program.h"
 #include "tests/support/temporary_folder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <numbers>
 #include <sstream>
 
@@ -73,6 +75,58 @@ TEST(Extend, AStageFromOutsideIsCheckedAndDocumented) {
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_NE(wrong.err.find("stage.1.amplitude = 2: must be a number above 0 and at most 1"), std::string::npos)
       << wrong.err;
+}
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// P of the first row of table.csv, k/d.
+double first_pressure(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  std::string header, row, cell;
+  std::getline(in, header);
+  std::getline(in, row);
+  std::istringstream names(header), values(row);
+  for (std::string name; std::getline(names, name, ',') && std::getline(values, cell, ',');) {
+    if (name == "P_k/d") {
+      return std::stod(cell);
+    }
+  }
+  return std::nan("");
+}
+
+TEST(Extend, AContactLawFromOutsideActs) {
+  // Two spheres at r = 0.8 d, at rest: f = k 0.2 + s 0.04 and P = r f / (3 V).
+  const TemporaryFolder folder;
+  std::ofstream(folder / "two.data") << "two spheres\n\n2 atoms\n1 atom types\n0 10 xlo xhi\n0 10 ylo yhi\n0 10 zlo "
+                                        "zhi\n\nMasses\n\n1 1\n\nAtoms # molecular\n\n1 1 1 5 5 5\n2 2 1 5.8 5 5\n";
+  for (const double s : {0.0, 20.0}) {
+    std::ofstream(folder / "two.toml")
+        << "[start]\nlammps_reference = \"two.data\"\nalpha = 0.0\n[material]\ncontact = "
+           "\"stiffening\"\nstiffening = "
+        << s << "\n[[stage]]\ntype = \"hold\"\ntime = 1.0\n";
+    const ProgramResult result = extended({"run", "two.toml", "--output", "out" + std::to_string(s)}, folder);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NEAR(first_pressure(folder / ("out" + std::to_string(s)) / "table.csv"), 0.8 * (0.2 + 0.04 * s) / 3000.0,
+                1e-15);
+  }
+}
+
+TEST(Extend, AMeasureFromOutsideIsTakenInRunsAndOnStoredFrames) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> run = {"run", BOBA_EXTEND_SCENE, "--output",
+                                        "out", "--set",           "output.trajectory.every_time=5"};
+  const ProgramResult result = extended(run, folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string during = text_of(folder / "out/measures/nearest.csv");
+  EXPECT_EQ(during.substr(0, during.find('\n')), "step,time_tau,strain,nearest_smallest_d,nearest_mean_d");
+  EXPECT_EQ(std::count(during.begin(), during.end(), '\n'), 18); // a header, the start, and every 5 tau of 80
+  const ProgramResult later = extended({"measure", "out", "--what", "nearest", "--output", "later"}, folder);
+  ASSERT_EQ(later.exit_code, 0) << later.err;
+  EXPECT_EQ(text_of(folder / "later/nearest.csv"), during);
+  EXPECT_NE(text_of(folder / "later/averages.json").find("nearest_mean_d"), std::string::npos);
 }
 
 } // namespace

@@ -98,7 +98,7 @@ struct CrystalRun {
 MeasureRunOptions all_of(const CrystalRun& run) {
   MeasureRunOptions options;
   options.run = run.folder;
-  options.plan.kinds = measure_kinds({"all"});
+  choose_measures(options.plan, {"all"});
   options.plan.scattering.q_max = 1.0;
   options.plan.facet_sensitivity = true;
   return options;
@@ -162,7 +162,7 @@ TEST(MeasureRun, SpaceFillingCrystalHasItsKnownNumbers) {
 TEST(MeasureRun, TablesAreNotOverwrittenInSilence) {
   const CrystalRun run("measure_run_twice");
   MeasureRunOptions options = all_of(run);
-  options.plan.kinds = measure_kinds({"order"});
+  choose_measures(options.plan, {"order"});
   measure_run(options);
   EXPECT_THROW(measure_run(options), std::invalid_argument); // wrong input, as for a run
   options.force = true;
@@ -174,7 +174,7 @@ TEST(MeasureRun, TablesAreNotOverwrittenInSilence) {
 TEST(MeasureRun, FramesAreChosenByStrain) {
   const CrystalRun run("measure_run_every");
   MeasureRunOptions options = all_of(run);
-  options.plan.kinds = measure_kinds({"stress"});
+  choose_measures(options.plan, {"stress"});
   options.every_strain = 0.8;
   EXPECT_EQ(measure_run(options).n_frames, 1);
   options.every_strain = 0.7;
@@ -185,7 +185,7 @@ TEST(MeasureRun, FramesAreChosenByStrain) {
 TEST(MeasureRun, WindowLimitsTheAverages) {
   const CrystalRun run("measure_run_window");
   MeasureRunOptions options = all_of(run);
-  options.plan.kinds = measure_kinds({"stress"});
+  choose_measures(options.plan, {"stress"});
   options.window = {-1.0, 5.0};
   measure_run(options);
   std::ifstream file(run.folder / "measures" / "averages.json");
@@ -207,7 +207,8 @@ TEST(MeasureRun, WrongInputIsNamed) {
   options = all_of(run);
   options.every = 0;
   EXPECT_THROW(measure_run(options), std::invalid_argument);
-  EXPECT_THROW(measure_kinds({"shape", "colour"}), std::invalid_argument);
+  MeasurePlan plan;
+  EXPECT_THROW(choose_measures(plan, {"shape", "colour"}), std::invalid_argument);
 }
 
 } // namespace
