@@ -23,13 +23,14 @@ Packing swinging_grains(const Lattice& lattice) {
   const Eigen::Array3i number = lattice.alone ? Eigen::Array3i(1, 1, 1) : Eigen::Array3i(4, 2, 2);
   std::vector<Placement> placements;
   for (int g = 0; g < number.prod(); ++g) {
-    const Eigen::Vector3d cell(g % number[0], g / number[0] % number[1], g / number[0] / number[1]);
+    const int row = g / number[0];
+    const Eigen::Vector3d cell = Eigen::Vector3i(g % number[0], row % number[1], row / number[1]).cast<double>();
     placements.push_back({Grain{.alpha = 2.0}, apart.cwiseProduct(cell + Vector3::Constant(0.5))});
   }
   const bool p = lattice.periodic;
   const Box box(Vector3::Zero(), apart.cwiseProduct(number.cast<double>().matrix()), Vector3::Zero(), {p, p, p});
   Packing packing = make_packing(box, {grain}, placements);
-  const double speed = 0.05 / (0.5 * (high - low).maxCoeff());
+  const double speed = 0.05 / (0.5 * (apart.maxCoeff() - lattice.gap)); // of the nodes farthest out
   for (std::size_t i = 0; i < packing.position.size(); ++i) {
     const Vector3 from_centre = packing.position[i] - placements[i / grain->position.size()].centre;
     packing.velocity[i] = speed * Vector3(-from_centre[0], from_centre[1], 0.0);

@@ -10,6 +10,8 @@
 #include <vector>
 #include <xsimd/xsimd.hpp>
 
+namespace kernels = boba::kernels;
+
 namespace {
 
 constexpr std::size_t n_numbers = 2048; // of each kind: all in the first level of the cache
@@ -40,9 +42,9 @@ void report(benchmark::State& state, const Numbers& numbers) {
 void own(benchmark::State& state) {
   Numbers numbers;
   for (auto _ : state) {
-    for (std::size_t i = 0; i < n_numbers; i += native_lanes) {
-      store(&numbers.inverse[i], inverse_sqrt(load<Wide>(&numbers.squared[i])));
-      store(&numbers.root[i], cube_root(load<Wide>(&numbers.ratio[i])));
+    for (std::size_t i = 0; i < n_numbers; i += kernels::native_lanes) {
+      kernels::store(&numbers.inverse[i], kernels::inverse_sqrt(kernels::load<kernels::Wide>(&numbers.squared[i])));
+      kernels::store(&numbers.root[i], kernels::cube_root(kernels::load<kernels::Wide>(&numbers.ratio[i])));
     }
     benchmark::ClobberMemory();
   }

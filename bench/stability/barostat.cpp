@@ -123,7 +123,7 @@ void barostat(const Folder& folder) {
   Stepper probe(packing, {}, {});
   probe.start();
   under_shear(folder, packing, pressure);
-  step_response(folder, packing, pressure, probe.affine_bulk_modulus());
+  step_response(folder, packing, pressure, affine_bulk_modulus(probe.moving()));
 }
 
 } // namespace boba::bench

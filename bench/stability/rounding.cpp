@@ -47,7 +47,8 @@ void error_growth(const Folder& folder) {
       mixed.advance(Virial::none);
       twin.advance();
       if (step % 100 == 0 || step < 10) {
-        file.print("{},{},double,{},{:.3e}\n", c.alpha, c.gamma, full.time(), distance(full.snapshot({}), twin));
+        file.print("{},{},double,{},{:.3e}\n", c.alpha, c.gamma, full.time(),
+                   distance(take_snapshot(full.moving(), {}), twin));
         file.print("{},{},mixed,{},{:.3e}\n", c.alpha, c.gamma, full.time(),
                    distance(take_snapshot(mixed.moving(), {}), twin));
       }
