@@ -38,7 +38,7 @@ void step(benchmark::State& state, const Packing& packing, const Steps& steps) {
   stepper.start();
   for (auto _ : state) {
     if ((stepper.step() + 1) % interval == 0) {
-      stepper.forces().contact_list().invalidate();
+      stepper.forces().forget_contacts();
     }
     stepper.advance(Virial::trace);
     stepper.move_cell(steps.cell);

@@ -40,7 +40,7 @@ Virial6 virial_when_deformed(MovingPacking& moving, const std::vector<Vector3>& 
   }
   Box deformed = box;
   deformed.set_h(deformation * box.h());
-  moving.forces.contact_list().invalidate();
+  moving.forces.forget_contacts();
   moving.forces.evaluate(moving.state, deformed,
                          {.virial = what, .is_trial = true, .residual_rate = moving.cell.residual_rate()});
   moving.forces.share_sums(what);
@@ -74,7 +74,7 @@ Probe probe(MovingPacking& moving, const Matrix3& gradient, double step, Virial 
   moving.state.take(before);
   moving.forces.set_sums(sums);
   moving.forces.walls() = walls;
-  moving.forces.contact_list().invalidate();
+  moving.forces.forget_contacts();
   return probe;
 }
 

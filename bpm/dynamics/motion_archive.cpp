@@ -159,7 +159,7 @@ void archive_motion(Archive& archive, MovingPacking& moving) {
   if (archive.is_reading()) {
     restore_nodes(archive, moving);
     restore_memory(archive, moving);
-    moving.forces.contact_list().invalidate();
+    moving.forces.forget_contacts();
   } else {
     save_nodes(archive, moving);
     save_memory(archive, moving);

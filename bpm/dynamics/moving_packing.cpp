@@ -21,14 +21,14 @@ MovingPacking::MovingPacking(Packing packing_in, const Material& material_in, co
 
 Timings timings_of(const MovingPacking& moving) {
   const ForceField::Seconds& seconds = moving.forces.seconds();
-  const ContactHalo::Traffic& traffic = moving.forces.halo().traffic();
+  const ContactHalo::Traffic traffic = moving.forces.traffic();
   Timings timings;
   timings.bonds = seconds.bonds;
   timings.contacts = seconds.contacts;
   timings.search = seconds.search;
   timings.integration = moving.integration_seconds;
   timings.steps = moving.step;
-  timings.list_builds = moving.forces.contact_list().counts().grains;
+  timings.list_builds = moving.forces.n_list_builds();
   timings.halo = seconds.halo;
   timings.reductions = moving.reduction_seconds;
   timings.halo_messages = traffic.messages;
@@ -40,7 +40,7 @@ Timings timings_of(const MovingPacking& moving) {
 
 std::size_t bytes_of(const MovingPacking& moving) {
   const Packing& packing = moving.packing;
-  return moving.state.bytes() + moving.forces.contact_list().bytes() +
+  return moving.state.bytes() + moving.forces.contact_bytes() +
          (packing.position.capacity() + packing.velocity.capacity()) * sizeof(Vector3) +
          packing.id.capacity() * sizeof(std::int64_t);
 }

@@ -115,7 +115,7 @@ void Stepper::note_motion(const std::vector<BlockMotion>& motion) {
     moving_.ranks().collectively([&] { check_drift(moving_, motion); });
   }
   const double dt = moving_.options.dt;
-  moving_.forces.contact_list().note_motion(moving_.cell.map(), dt * speeds.largest, dt * speeds.common);
+  moving_.forces.note_motion(moving_.cell.map(), dt * speeds.largest, dt * speeds.common);
 }
 
 void Stepper::evaluate(Evaluation what) {
@@ -154,7 +154,7 @@ void Stepper::deform_cell(const Matrix3& gradient, const Matrix3& of_positions) 
   // A periodic template's bonds name their images by the cell vectors it was made with: its cell is never flipped.
   const bool may_flip = !moving_.forces.bonds().has_periodic_template();
   if (moving_.cell.deform(gradient, of_positions, moving_.options.dt, may_flip)) {
-    moving_.forces.contact_list().invalidate();
+    moving_.forces.forget_contacts();
   }
 }
 

@@ -20,7 +20,8 @@ std::vector<ContactLawEntry>& mutable_contact_laws() {
        .make =
            [](const Material& m) {
              const ContactLaw law{.k = m.k, .gamma = m.gamma, .k3 = m.k3, .diameter = m.diameter};
-             return std::make_shared<const ContactModelOf<ContactLaw>>(law, kernels::best_table().contacts);
+             const kernels::KernelTable& table = kernels::best_table();
+             return std::make_shared<const ContactModelOf<ContactLaw>>(law, table.contacts, table.point_contacts);
            }},
       {.name = HertzLaw::name,
        .parameters = {HertzLaw::modulus_parameter},
@@ -28,7 +29,9 @@ std::vector<ContactLawEntry>& mutable_contact_laws() {
        .make =
            [](const Material& m) {
              const HertzLaw law{.modulus = m.contact_parameters[0], .gamma = m.gamma, .diameter = m.diameter};
-             return std::make_shared<const ContactModelOf<HertzLaw>>(law, kernels::best_table().hertz_contacts);
+             const kernels::KernelTable& table = kernels::best_table();
+             return std::make_shared<const ContactModelOf<HertzLaw>>(law, table.hertz_contacts,
+                                                                     table.hertz_point_contacts);
            }},
   };
   return laws;

@@ -18,20 +18,28 @@ public:
   /// The contact pass, see kernels::ContactKernel.
   virtual std::int64_t evaluate(const kernels::ContactCandidates& candidates, kernels::ContactNode* rows,
                                 kernels::Touch* touches, kernels::ContactSums& sums) const = 0;
+  /// The same for grains of one node, see kernels::PointContactKernel.
+  virtual void evaluate(const kernels::PointCandidates& candidates, const kernels::PointSumming& how,
+                        const kernels::PointScratch& scratch, kernels::PointSums* sums) const = 0;
 };
 
 /// The model of a law. Source: the law's own file.
 template <class Law> class ContactModelOf final : public PlainContactOf<Law, ContactModel> {
 public:
-  ContactModelOf(const Law& law, kernels::ContactKernel<Law> kernel)
-      : PlainContactOf<Law, ContactModel>(law), kernel_(kernel) {}
+  ContactModelOf(const Law& law, kernels::ContactKernel<Law> kernel, kernels::PointContactKernel<Law> point_kernel)
+      : PlainContactOf<Law, ContactModel>(law), kernel_(kernel), point_kernel_(point_kernel) {}
   std::int64_t evaluate(const kernels::ContactCandidates& candidates, kernels::ContactNode* rows,
                         kernels::Touch* touches, kernels::ContactSums& sums) const override {
     return kernel_(candidates, this->law(), rows, touches, sums);
   }
+  void evaluate(const kernels::PointCandidates& candidates, const kernels::PointSumming& how,
+                const kernels::PointScratch& scratch, kernels::PointSums* sums) const override {
+    point_kernel_(candidates, this->law(), how, scratch, sums);
+  }
 
 private:
   kernels::ContactKernel<Law> kernel_;
+  kernels::PointContactKernel<Law> point_kernel_;
 };
 
 /// A contact law that scenes may choose by name.

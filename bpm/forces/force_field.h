@@ -5,8 +5,13 @@
 #include "bpm/forces/bond_survey.h"
 #include "bpm/forces/contact_forces.h"
 #include "bpm/forces/node_drift.h"
+#include "bpm/forces/point_contacts.h"
 #include "bpm/forces/wall_forces.h"
 
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace boba {
@@ -48,14 +53,23 @@ public:
   }
 
   /// Distance below which nodes of different grains feel each other, d.
-  double contact_range() const { return contacts_.law().range(); }
-  ContactList& contact_list() { return contacts_.list(); }
-  const ContactList& contact_list() const { return contacts_.list(); }
+  double contact_range() const { return contact_law().range(); }
+  /// The cell was mapped by `cell_map`, and beyond that no node moved farther than `farthest`, and none that the
+  /// contact list does not follow farther than `common`, d.
+  void note_motion(const Matrix3& cell_map, double farthest, double common);
+  /// The cell's vectors or the state changed in a way that note_motion was not told of.
+  void forget_contacts();
+  /// How often lists were built, grain by grain; all at once where grains are single nodes.
+  std::int64_t n_list_builds() const;
+  std::size_t contact_bytes() const; ///< without the halo's
+  /// Of packings whose grains are not all single nodes. \throws std::bad_optional_access otherwise.
+  const ContactList& contact_list() const { return contacts_.value().list(); }
   Walls& walls() { return walls_.walls(); }
   const Walls& walls() const { return walls_.walls(); }
   const BondForces& bonds() const { return bonds_; }
   const kernels::KernelTable& kernel_table() const { return table_; }
-  const ContactHalo& halo() const { return contacts_.halo(); }
+  /// What this rank has received of other ranks' nodes so far.
+  ContactHalo::Traffic traffic() const { return contacts_ ? contacts_->halo().traffic() : ContactHalo::Traffic{}; }
 
   /// Seconds spent so far; `halo`: of waiting for other ranks' nodes, and of asking for them.
   struct Seconds {
@@ -65,6 +79,9 @@ public:
 
 private:
   class ContactsAndWalls;
+  const ContactModel& contact_law() const { return points_ ? *point_law_ : contacts_->law(); }
+  void evaluate_points(LaneState& state, const Box& box, const Evaluation& what);
+  void evaluate_pairs(LaneState& state, const Box& box, const Evaluation& what);
   void evaluate_part(const ContactForces::Part& part, LaneState& state, const Box& box, const Evaluation& what);
 
   const LaneLayout& layout_;
@@ -72,7 +89,10 @@ private:
   const kernels::KernelTable& table_;
   const Distribution& distribution_;
   BondForces bonds_;
-  ContactForces contacts_;
+  // One of the two: grains of single nodes on one rank have a list of their own.
+  std::optional<ContactForces> contacts_;
+  std::shared_ptr<const ContactModel> point_law_;
+  std::optional<PointContacts> points_;
   WallForces walls_;
   ForceSums sums_;
   Seconds seconds_;

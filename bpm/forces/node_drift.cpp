@@ -52,14 +52,18 @@ void note_fast_nodes(const Block& block, std::span<const std::int32_t> nodes, co
   }
 }
 
-/// Moves the nodes [begin, end) of a block.
-Drifted drift_piece(const Block& block, int begin, int end, const kernels::KernelTable& table, LaneState& state,
-                    kernels::Drift drift, ContactForces& contacts) {
+void set_lane_shifts(const Block& block, const LaneState& state, kernels::Drift& drift) {
   const Vector3 residual(drift.residual[0], drift.residual[1], drift.residual[2]);
   for (int lane = 0; lane < block.n_lanes; ++lane) {
     drift.lane_shift[lane] =
         drift.residual_shift + (block.grain[lane] >= 0 ? residual.dot(state.origin(block.grain[lane])) : 0.0);
   }
+}
+
+/// Moves the nodes [begin, end) of a block.
+Drifted drift_piece(const Block& block, int begin, int end, const kernels::KernelTable& table, LaneState& state,
+                    kernels::Drift drift, ContactForces& contacts) {
+  set_lane_shifts(block, state, drift);
   std::array<std::size_t, max_lanes> collected{};
   for (int lane = 0; lane < block.n_lanes; ++lane) {
     if (const int grain = block.grain[lane]; grain >= 0) {
@@ -131,6 +135,27 @@ std::vector<BlockMotion> drift_nodes(const LaneLayout& layout, const kernels::Ke
     }
   }
   contacts.note_collected();
+  return results;
+}
+
+std::vector<BlockMotion> drift_points(const LaneLayout& layout, const kernels::KernelTable& table, LaneState& state,
+                                      const kernels::Drift& drift) {
+  const int n_blocks = static_cast<int>(layout.blocks().size());
+  std::vector<BlockMotion> results(n_blocks);
+  state.visit([&](auto& lanes) {
+    const auto& kernel = kernels_of(table, lanes);
+#pragma omp parallel for schedule(static)
+    for (int b = 0; b < n_blocks; ++b) {
+      const Block& block = layout.blocks()[b];
+      kernels::Drift of_block = drift;
+      of_block.quantum = state.quantum();
+      of_block.first_node = 0;
+      set_lane_shifts(block, state, of_block);
+      const kernels::DriftResult part = kernel.drift(lanes.x.data() + block.offset, lanes.v.data() + block.offset,
+                                                     block.n_nodes, block.n_lanes, of_block);
+      results[b] = {part.largest_speed2, part.largest_speed2, part.checksum};
+    }
+  });
   return results;
 }
 

@@ -20,4 +20,8 @@ struct BlockMotion {
 std::vector<BlockMotion> drift_nodes(const LaneLayout& layout, const kernels::KernelTable& table, LaneState& state,
                                      kernels::Drift drift, ContactForces& contacts);
 
+/// The same for grains of single nodes, whose contacts look at the nodes by themselves.
+std::vector<BlockMotion> drift_points(const LaneLayout& layout, const kernels::KernelTable& table, LaneState& state,
+                                      const kernels::Drift& drift);
+
 } // namespace boba

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "bpm/forces/contact_laws.h"
-#include "bpm/forces/kernels/contact_kernel.h"
+#include "bpm/forces/kernels/point_kernel.h"
 
 #include <utility>
 
@@ -22,7 +22,8 @@ void add_contact_law(std::string name, std::vector<Parameter> parameters, std::f
   add_contact_law({.name = std::move(name),
                    .parameters = std::move(parameters),
                    .make = [make = std::move(make)](const Material& material) {
-                     return std::make_shared<const ContactModelOf<Law>>(make(material), &kernels::contact_forces<Law>);
+                     return std::make_shared<const ContactModelOf<Law>>(make(material), &kernels::contact_forces<Law>,
+                                                                        &kernels::point_contact_forces<Law>);
                    }});
 }
 

@@ -11,7 +11,8 @@ void WallForces::begin() {
 }
 
 template <class Real>
-void WallForces::add(const Block& block, const LaneState& state, Real* f, bool with_sums, ForceSums& sums) {
+void WallForces::add(const PlainContact& law, const Block& block, const LaneState& state, Real* f, bool with_sums,
+                     ForceSums& sums) {
   for (std::size_t wall = 0; wall < walls_.size(); ++wall) {
     for (int lane = 0; lane < block.n_lanes; ++lane) {
       const int grain = block.grain[lane];
@@ -24,7 +25,7 @@ void WallForces::add(const Block& block, const LaneState& state, Real* f, bool w
         }
       };
       forces_[wall][grain] =
-          add_wall_forces(walls_[wall], law_, layout_, grain, state, add_force, with_sums, sums.contacts[grain]);
+          add_wall_forces(walls_[wall], law, layout_, grain, state, add_force, with_sums, sums.contacts[grain]);
     }
   }
 }
@@ -36,7 +37,7 @@ void WallForces::end(const Distribution& distribution) {
   }
 }
 
-template void WallForces::add(const Block&, const LaneState&, double*, bool, ForceSums&);
-template void WallForces::add(const Block&, const LaneState&, float*, bool, ForceSums&);
+template void WallForces::add(const PlainContact&, const Block&, const LaneState&, double*, bool, ForceSums&);
+template void WallForces::add(const PlainContact&, const Block&, const LaneState&, float*, bool, ForceSums&);
 
 } // namespace boba

@@ -28,26 +28,42 @@ double sphere_volume(double radius) {
 }
 
 /// Overlaps of spheres in a periodic cube, found with a cell grid (or all images in a cube of few cells).
+///
+/// The grid serves for several sweeps: it gives the pairs within a skin, which last until a sphere has moved by half of
+/// that. Overlaps are added in the order in which the grid of the present positions would give them.
 class SphereOverlaps {
 public:
   SphereOverlaps(const std::vector<double>& radii, double edge) : radii_(radii), edge_(edge) {
-    largest_ = *std::max_element(radii.begin(), radii.end()) * (1.0 + inflation);
-    cells_ = static_cast<int>(std::min(edge / (2.0 * largest_), 128.0));
+    const double largest = *std::max_element(radii.begin(), radii.end()) * (1.0 + inflation);
+    cells_ = static_cast<int>(std::min(edge / (2.0 * largest), most_cells));
+    if (cells_ >= 3) {
+      skin_ = std::clamp(edge / 3.0 - 2.0 * largest, 0.0, skin_share * largest);
+      search_cells_ = std::max(3, static_cast<int>(std::min(edge / (2.0 * largest + skin_), most_cells)));
+    }
   }
 
   /// Half the sum of each sphere's overlaps along the lines of centres; returns the largest relative overlap.
-  double push(const std::vector<Vector3>& x, std::vector<Vector3>& move) {
+  /// \param moved most that a sphere has moved since the last call
+  double push(const std::vector<Vector3>& x, double moved, std::vector<Vector3>& move) {
     std::fill(move.begin(), move.end(), Vector3::Zero());
     worst_ = 0.0;
-    if (cells_ < 3) {
+    if (search_cells_ < 3) {
       push_all_images(x, move);
-    } else {
-      push_grid(x, move);
+      return worst_;
     }
+    moved_ += moved;
+    if (first_pair_.empty() || 2.0 * moved_ > skin_) {
+      list_pairs(x);
+      moved_ = 0.0;
+    }
+    push_pairs(x, move);
     return worst_;
   }
 
 private:
+  static constexpr double most_cells = 128.0; ///< along an edge
+  static constexpr double skin_share = 0.2;   ///< of the largest radius
+
   void push_pair(std::size_t i, std::size_t j, const Vector3& difference, std::vector<Vector3>& move) {
     const double reach = (radii_[i] + radii_[j]) * (1.0 + inflation);
     const double r2 = difference.squaredNorm();
@@ -71,44 +87,101 @@ private:
     }
   }
 
-  int cell_of(const Vector3& x, int axis) const {
-    return std::min(static_cast<int>(x[axis] / edge_ * cells_), cells_ - 1);
+  using Cell = std::array<std::int16_t, 3>;
+  Cell cell_of(const Vector3& x, int n_cells) const {
+    Cell cell;
+    for (int axis = 0; axis < 3; ++axis) {
+      cell[axis] = static_cast<std::int16_t>(std::min(static_cast<int>(x[axis] / edge_ * n_cells), n_cells - 1));
+    }
+    return cell;
   }
 
-  void push_grid(const std::vector<Vector3>& x, std::vector<Vector3>& move) {
-    const auto n = static_cast<std::size_t>(cells_);
-    first_.assign(n * n * n, -1);
-    next_.assign(x.size(), -1);
+  /// Lists, for every sphere, the later ones that are within the skin or may come there.
+  void list_pairs(const std::vector<Vector3>& x) {
+    const int n = search_cells_;
+    std::vector<int> first(static_cast<std::size_t>(n) * n * n, -1), next(x.size(), -1);
+    const auto place = [&](int a, int b, int c) { return (static_cast<std::size_t>(c) * n + b) * n + a; };
     for (std::size_t i = x.size(); i-- > 0;) {
-      const std::size_t cell = (cell_of(x[i], 2) * n + cell_of(x[i], 1)) * n + cell_of(x[i], 0);
-      next_[i] = first_[cell];
-      first_[cell] = static_cast<int>(i);
+      const Cell cell = cell_of(x[i], n);
+      int& head = first[place(cell[0], cell[1], cell[2])];
+      next[i] = head;
+      head = static_cast<int>(i);
     }
+    first_pair_.assign(1, 0);
+    later_.clear();
     for (std::size_t i = 0; i < x.size(); ++i) {
+      const Cell cell = cell_of(x[i], n);
       for (int neighbour = 0; neighbour < 27; ++neighbour) {
+        const int offset[3] = {neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1};
+        int beside[3];
         Vector3 shift = Vector3::Zero();
-        std::size_t cell = 0;
-        for (int axis = 2; axis >= 0; --axis) {
-          const int offset = axis == 0 ? neighbour % 3 - 1 : axis == 1 ? neighbour / 3 % 3 - 1 : neighbour / 9 - 1;
-          const int c = cell_of(x[i], axis) + offset;
-          shift[axis] = c < 0 ? edge_ : c >= cells_ ? -edge_ : 0.0;
-          cell = cell * n + static_cast<std::size_t>((c + cells_) % cells_);
+        for (int axis = 0; axis < 3; ++axis) {
+          const int c = cell[axis] + offset[axis];
+          shift[axis] = c < 0 ? edge_ : c >= n ? -edge_ : 0.0;
+          beside[axis] = c < 0 ? c + n : c >= n ? c - n : c;
         }
-        for (int j = first_[cell]; j >= 0; j = next_[j]) {
-          if (static_cast<std::size_t>(j) > i) {
-            push_pair(i, j, x[i] - x[j] + shift, move);
+        for (int j = first[place(beside[0], beside[1], beside[2])]; j >= 0; j = next[j]) {
+          const double reach = (radii_[i] + radii_[j]) * (1.0 + inflation) + skin_;
+          if (static_cast<std::size_t>(j) > i && (x[i] - x[j] + shift).squaredNorm() < reach * reach) {
+            later_.push_back(j);
           }
         }
+      }
+      first_pair_.push_back(later_.size());
+    }
+  }
+
+  /// The overlaps of the listed pairs, in the order of the cells around each sphere.
+  void push_pairs(const std::vector<Vector3>& x, std::vector<Vector3>& move) {
+    struct Overlap {
+      int order, other;
+      Vector3 difference;
+    };
+    cell_.resize(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      cell_[i] = cell_of(x[i], cells_);
+    }
+    std::vector<Overlap> overlaps;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      overlaps.clear();
+      for (std::size_t k = first_pair_[i]; k < first_pair_[i + 1]; ++k) {
+        const int j = later_[k];
+        int order = 0;
+        Vector3 shift = Vector3::Zero();
+        for (int axis = 2; axis >= 0; --axis) {
+          int offset = cell_[j][axis] - cell_[i][axis];
+          if (offset > 1) { // the other is behind the lower face
+            offset -= cells_;
+            shift[axis] = edge_;
+          } else if (offset < -1) {
+            offset += cells_;
+            shift[axis] = -edge_;
+          }
+          order = 3 * order + offset + 1;
+        }
+        const Vector3 difference = x[i] - x[j] + shift;
+        const double reach = (radii_[i] + radii_[j]) * (1.0 + inflation);
+        if (difference.squaredNorm() < reach * reach) {
+          overlaps.push_back({order, j, difference});
+        }
+      }
+      std::sort(overlaps.begin(), overlaps.end(), [](const Overlap& a, const Overlap& b) {
+        return a.order != b.order ? a.order < b.order : a.other < b.other;
+      });
+      for (const Overlap& overlap : overlaps) {
+        push_pair(i, overlap.other, overlap.difference, move);
       }
     }
   }
 
   const std::vector<double>& radii_;
   double edge_;
-  double largest_ = 0.0;
-  int cells_ = 0;
+  double skin_ = 0.0, moved_ = 0.0; ///< moved since the pairs were listed
+  int cells_ = 0, search_cells_ = 0;
   double worst_ = 0.0;
-  std::vector<int> first_, next_;
+  std::vector<std::size_t> first_pair_; ///< per sphere, and one more
+  std::vector<int> later_;              ///< of each pair the later sphere
+  std::vector<Cell> cell_;
 };
 
 void wrap(Vector3& x, double edge) {
@@ -169,14 +242,16 @@ std::vector<Vector3> place_spheres(const std::vector<double>& radii, double edge
   constexpr double share = 0.25, memory = 0.8;
   SphereOverlaps overlaps(radii, edge);
   std::vector<Vector3> push(radii.size()), last(radii.size(), Vector3::Zero());
-  double worst = 1.0;
+  double worst = 1.0, moved = 0.0;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    worst = overlaps.push(x, push);
+    worst = overlaps.push(x, moved, push);
     if (worst < 0.5 * inflation) {
       return x;
     }
+    moved = 0.0;
     for (std::size_t i = 0; i < x.size(); ++i) {
       last[i] = memory * last[i] + share * push[i];
+      moved = std::max(moved, last[i].norm());
       x[i] += last[i];
       wrap(x[i], edge);
     }

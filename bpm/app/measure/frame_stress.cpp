@@ -33,7 +33,7 @@ struct FrameStress::Impl {
         state.set_velocity(g, node, snapshot.velocity.empty() ? Vector3(Vector3::Zero()) : snapshot.velocity[i]);
       }
     }
-    forces.contact_list().invalidate();
+    forces.forget_contacts();
   }
 
   /// v = v(n) - dt/(2m) f, with the forces evaluated last.

@@ -79,8 +79,12 @@ inline std::int64_t touching_rows(const ContactCandidates& c, double range, Cont
 struct TouchSums {
   Wide virial[6]{}, smallest_r2, potential{};
 };
-template <class Law>
-inline void evaluate_touches(const ContactNode* rows, const Law& law, Touch* touches, TouchSums& sums) {
+
+/// As many touches as a register holds.
+struct TouchRegister {
+  Wide force[3], virial[6], r2, potential;
+};
+template <class Law> inline TouchRegister evaluate_rows(const ContactNode* rows, const Law& law) {
   Wide d[3], approach{};
   for (int l = 0; l < native_lanes; ++l) {
     for (int c = 0; c < 3; ++c) {
@@ -91,19 +95,26 @@ inline void evaluate_touches(const ContactNode* rows, const Law& law, Touch* tou
   const Wide r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
   const Wide inverse_r = inverse_sqrt(r2), r = r2 * inverse_r;
   const Wide s = law.force(r, approach * inverse_r) * inverse_r;
-  const Wide force[3] = {s * d[0], s * d[1], s * d[2]};
+  const Wide f[3] = {s * d[0], s * d[1], s * d[2]};
+  return {{f[0], f[1], f[2]},
+          {f[0] * d[0], f[1] * d[1], f[2] * d[2], f[0] * d[1], f[0] * d[2], f[1] * d[2]},
+          r2,
+          law.energy(r)};
+}
+
+template <class Law>
+inline void evaluate_touches(const ContactNode* rows, const Law& law, Touch* touches, TouchSums& sums) {
+  const TouchRegister touch = evaluate_rows(rows, law);
   for (int l = 0; l < native_lanes; ++l) {
     for (int c = 0; c < 3; ++c) {
-      touches[l].force[c] = force[c][l];
+      touches[l].force[c] = touch.force[c][l];
     }
   }
-  const Wide terms[6] = {force[0] * d[0], force[1] * d[1], force[2] * d[2],
-                         force[0] * d[1], force[0] * d[2], force[1] * d[2]};
   for (int c = 0; c < 6; ++c) {
-    sums.virial[c] += terms[c];
+    sums.virial[c] += touch.virial[c];
   }
-  sums.smallest_r2 = r2 < sums.smallest_r2 ? r2 : sums.smallest_r2;
-  sums.potential += law.energy(r);
+  sums.smallest_r2 = touch.r2 < sums.smallest_r2 ? touch.r2 : sums.smallest_r2;
+  sums.potential += touch.potential;
 }
 
 /// The sums follow from the touches alone, whatever other candidates there were.

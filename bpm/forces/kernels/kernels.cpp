@@ -7,6 +7,7 @@
 #include "bpm/forces/kernels/drift_kernel.h"
 #include "bpm/forces/kernels/frame_kernel.h"
 #include "bpm/forces/kernels/near_kernel.h"
+#include "bpm/forces/kernels/point_kernel.h"
 
 #define BOBA_STRINGIFY_(x) #x
 #define BOBA_STRINGIFY(x) BOBA_STRINGIFY_(x)
@@ -35,6 +36,8 @@ extern const KernelTable BOBA_KERNEL_TABLE = {
     &near_candidates,
     &contact_forces<ContactLaw>,
     &contact_forces<HertzLaw>,
+    &point_contact_forces<ContactLaw>,
+    &point_contact_forces<HertzLaw>,
     &near_places};
 
 } // namespace boba::kernels

@@ -155,6 +155,45 @@ struct ContactSums {
   std::int64_t n_touching;
 };
 
+/// Three components and a zero, which loops read as one vector.
+struct alignas(32) PointRow {
+  double x[4];
+};
+
+/// Candidates of grains of one node each. Those of node i are [first[i], first[i + 1]); each pair of nodes is there
+/// twice, so that every node sums the forces on itself.
+struct PointCandidates {
+  const std::int32_t* first;
+  const std::int32_t* other;                    ///< per candidate: the second node
+  const std::int32_t* image;                    ///< per candidate: its lattice vector
+  const PointRow *x, *v;                        ///< of all nodes, which `other` counts
+  const PointRow *image_shift, *image_velocity; ///< lattice vectors and how they move
+  std::int32_t begin;                           ///< number of node 0 of `first`
+  std::int32_t n_nodes;
+};
+
+/// What the contacts of a node give it.
+struct PointSums {
+  double force[3];      ///< k d
+  ContactSums contacts; ///< of its sides; where asked for
+};
+
+/// How the contacts of nodes are summed up.
+struct PointSumming {
+  bool in_floats = false; ///< the forces, as those of other grains in mixed precision
+  bool with_contacts = false;
+};
+
+/// What the pass over candidates writes meanwhile.
+struct PointScratch {
+  double* terms;          ///< point_terms times `stride` of them
+  std::int64_t stride;    ///< at least touch_capacity(candidates)
+  std::int32_t* touching; ///< as many
+  std::int32_t* last;     ///< one for each node
+};
+/// What a touch adds, component by component: three of the force, six of the virial, energy and r^2.
+inline constexpr int point_terms = 11;
+
 /// Positions of a block and the places of its nodes in their grains' frames, [node][component][lane].
 template <class Coordinate> struct FrameArraysOf {
   const Coordinate* x;
@@ -232,6 +271,11 @@ template <class Law>
 using ContactKernel = std::int64_t (*)(const ContactCandidates&, const Law&, ContactNode* rows, Touch* touches,
                                        ContactSums&);
 
+/// The same for grains of one node: sums of each, to the last bit as if its pairs were evaluated one by one.
+template <class Law>
+using PointContactKernel = void (*)(const PointCandidates&, const Law&, const PointSumming&, const PointScratch&,
+                                    PointSums* sums);
+
 struct KernelTable {
   const char* name; ///< "avx512", "avx2" or "baseline"
   LaneKernels<double, double> precise;
@@ -241,6 +285,8 @@ struct KernelTable {
   std::int64_t (*near_candidates)(const ContactCandidates&, double reach2, NodePair* near);
   ContactKernel<ContactLaw> contacts;
   ContactKernel<HertzLaw> hertz_contacts;
+  PointContactKernel<ContactLaw> point_contacts;
+  PointContactKernel<HertzLaw> hertz_point_contacts;
   /// Writes the places of some ranges closer than sqrt(reach2) to p into `found`, range by range and ascending, and
   /// returns their number. `found` has room for near_padding more numbers than there are places. Coordinates are
   /// rounded to floats.

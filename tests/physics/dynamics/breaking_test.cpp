@@ -207,7 +207,7 @@ TEST(Breaking, ContactsOfBrokenBondsAreNotMissed) {
     stepper->start();
     for (int step = 0; step < 400; ++step) {
       if (stepper == &fresh) {
-        stepper->forces().contact_list().invalidate();
+        stepper->forces().forget_contacts();
       }
       stepper->advance(step + 1 < 400 ? Virial::trace : Virial::full);
       stepper->move_cell({.shear = 0.02, .dilation = 0.05 * (stepper->pressure() - 0.2)});

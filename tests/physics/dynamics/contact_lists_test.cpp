@@ -25,7 +25,7 @@ TEST(ContactLists, ThatLiveLongMissNothing) {
       stepper->start();
       for (int step = 0; step < 600; ++step) {
         if (stepper == &fresh) {
-          stepper->forces().contact_list().invalidate();
+          stepper->forces().forget_contacts();
         }
         stepper->advance(step + 1 < 600 ? Virial::trace : Virial::full);
         stepper->move_cell({.shear = 0.02, .remap = remap, .dilation = 0.05 * (stepper->pressure() - 0.2)});
@@ -64,7 +64,7 @@ TEST(ContactLists, KnowANodeFarFromItsGrain) {
   fresh.start();
   std::int64_t most = 0;
   for (int step = 0; step < 400; ++step) {
-    fresh.forces().contact_list().invalidate();
+    fresh.forces().forget_contacts();
     lasting.advance(Virial::trace);
     fresh.advance(Virial::trace);
     ASSERT_EQ(lasting.forces().contact_totals().n_touching, fresh.forces().contact_totals().n_touching) << step;
