@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/app/output_record.h"
 
+#include "bpm/app/run_files.h"
 #include "bpm/io/input_error.h"
 #include "bpm/io/output_file.h"
 #include "bpm/io/trajectory.h"
@@ -9,6 +10,7 @@
 #include <charconv>
 #include <fmt/format.h>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <zlib.h>
@@ -102,6 +104,10 @@ OutputRecord::OutputRecord(OutputFolder folder, std::vector<std::string> names) 
   for (const std::string& name : names) {
     has_trajectory_ = has_trajectory_ || name == "trajectory.h5";
     has_vtk_ = has_vtk_ || name == "vtk/packing.pvd";
+    has_stage_tables_ = has_stage_tables_ || name == stage_tables_name;
+    if (name == stage_tables_name) {
+      continue; // each is written once, when its stage has ended
+    }
     if (name == "scene.toml" || name == "dump.lammpstrj" || name.ends_with(".csv")) {
       growing_.push_back(name);
     }
@@ -114,19 +120,20 @@ void OutputRecord::extend(const std::string& name) {
   }
 }
 
-void OutputRecord::add_vtk_files(std::int64_t step) {
+void OutputRecord::add_numbered(const std::string& folder, std::string_view begin, std::string_view end,
+                                std::int64_t last) {
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder_.vtk(), error)) {
-    constexpr std::string_view begin = "packing_", end = ".vtp";
+  for (const auto& entry : fs::directory_iterator(folder_.root() / folder, error)) {
     const std::string file = entry.path().filename().string();
-    std::int64_t of_file = 0;
+    std::int64_t number = 0;
     if (!file.starts_with(begin) || !file.ends_with(end)) {
       continue;
     }
-    const auto [stop, bad] = std::from_chars(file.data() + begin.size(), file.data() + file.size(), of_file);
-    const bool is_frame = bad == std::errc() && stop == file.data() + file.size() - end.size();
-    if (is_frame && of_file <= step && !sums_.contains("vtk/" + file)) {
-      extend("vtk/" + file);
+    const auto [stop, bad] = std::from_chars(file.data() + begin.size(), file.data() + file.size(), number);
+    const bool is_numbered = bad == std::errc() && stop == file.data() + file.size() - end.size();
+    const std::string name = folder + "/" + file;
+    if (is_numbered && number <= last && !sums_.contains(name)) {
+      extend(name);
     }
   }
 }
@@ -136,7 +143,10 @@ std::string OutputRecord::text(std::int64_t step, std::int64_t n_frames, std::in
     extend(name);
   }
   if (has_vtk_) {
-    add_vtk_files(step);
+    add_numbered("vtk", "packing_", ".vtp", step);
+  }
+  if (has_stage_tables_) {
+    add_numbered("stages", "stage-", ".csv", std::numeric_limits<std::int64_t>::max());
   }
   std::string text;
   for (const auto& [name, sum] : sums_) {

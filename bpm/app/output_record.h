@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace boba {
@@ -33,11 +34,12 @@ private:
     std::uint32_t crc = 0;
   };
   void extend(const std::string& name);
-  void add_vtk_files(std::int64_t step);
+  /// Files of a folder named by a number up to `last`, each alone.
+  void add_numbered(const std::string& folder, std::string_view begin, std::string_view end, std::int64_t last);
 
   OutputFolder folder_;
   std::vector<std::string> growing_;
-  bool has_trajectory_ = false, has_vtk_ = false;
+  bool has_trajectory_ = false, has_vtk_ = false, has_stage_tables_ = false;
   std::map<std::string, Sum> sums_;
 };
 

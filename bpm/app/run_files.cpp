@@ -41,7 +41,7 @@ std::vector<std::string> measure_names_of(const MeasurePlan& plan) {
 /// Every name that a run, or a measure of it, can have.
 std::set<std::string> names_of_any_run() {
   std::vector<std::string> names = always_written;
-  append<std::string>(names, {"trajectory.h5", "dump.lammpstrj", averages_name});
+  append<std::string>(names, {"trajectory.h5", "dump.lammpstrj", averages_name, stage_tables_name});
   append(names, vtk_names);
   MeasurePlan all_kinds;
   choose_measures(all_kinds, {"all"});
@@ -142,6 +142,9 @@ std::vector<std::string> files_of_run(const Scene& scene) {
   }
   for (const SceneMeasure& measure : scene.measures) {
     append(names, measure_names_of(measure.plan));
+  }
+  if (std::ranges::any_of(scene.stages, [](const SceneStage& stage) { return stage.entry->has_table(); })) {
+    names.emplace_back(stage_tables_name);
   }
   return names;
 }

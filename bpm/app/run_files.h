@@ -14,6 +14,9 @@ namespace boba {
 /// files.txt before the first of them is made, so that `--force` later knows them from what others put there.
 std::vector<std::string> files_of_run(const Scene& scene);
 
+/// What files_of_run calls the tables of stages.
+inline constexpr const char* stage_tables_name = "stages/stage-*.csv";
+
 /// Writes the list of a new run. \throws std::runtime_error
 void write_file_list(const OutputFolder& folder, const std::vector<std::string>& names);
 

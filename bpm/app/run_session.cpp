@@ -12,8 +12,10 @@
 #include "bpm/app/version.h"
 #include "bpm/archive/saved_state.h"
 #include "bpm/io/naming.h"
+#include "bpm/io/table.h"
 #include "bpm/packing/packing_numbers.h"
 
+#include <cmath>
 #include <fmt/format.h>
 
 namespace boba {
@@ -127,6 +129,29 @@ private:
     return file;
   }
 
+  /// The table that a stage has filled. Its rows are in the checkpoints until then, so it is written as a whole.
+  void write_table_of(const PreparedStage& stage) {
+    const StageTable* table = stage.driver->table();
+    if (table == nullptr) {
+      return;
+    }
+    ranks_.on_root([&] {
+      const std::filesystem::path folder = setup_.folder.root() / "stages";
+      std::filesystem::create_directories(folder);
+      std::vector<std::string> columns = {"step"};
+      columns.insert(columns.end(), table->columns.begin(), table->columns.end());
+      TableWriter writer(folder / fmt::format("stage-{}.csv", stage.index), columns, FileMode::overwrite);
+      for (const StageTable::Row& row : table->rows) {
+        std::vector<std::optional<double>> values;
+        for (const double value : row.values) {
+          values.push_back(std::isfinite(value) ? std::optional(value) : std::nullopt);
+        }
+        writer.write(row.step, values);
+      }
+      writer.close();
+    });
+  }
+
   void introduce() {
     log_.note(version_text() + ", instruction set " + simulation_.instruction_set());
     for (const std::string& assignment : setup_.scene.overrides) {
@@ -170,6 +195,7 @@ private:
       if (outcome == RunOutcome::stopped) {
         return stop();
       }
+      write_table_of(stage);
       write_checkpoint();
       const bool missed = stage.driver->has_missed();
       log_.say(summary_.text(simulation_, stage.label) + (missed ? " (a target was missed)" : ""));

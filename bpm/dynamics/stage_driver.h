@@ -5,6 +5,7 @@
 #include "bpm/dynamics/moving_cell.h"
 #include "bpm/dynamics/observer.h"
 #include "bpm/dynamics/simulation.h"
+#include "bpm/dynamics/stage_table.h"
 
 #include <cstdint>
 #include <string>
@@ -44,6 +45,8 @@ public:
   virtual std::string report() const { return ""; }
   /// Did it hold something and miss its target? Known at its end.
   virtual bool has_missed() const { return false; }
+  /// A table of the stage's own, to be written when it has ended; null without one.
+  virtual const StageTable* table() const { return nullptr; }
   /// All that the stage needs to continue bit for bit, field by field.
   virtual void archive(Archive& archive) = 0;
 };

@@ -2,10 +2,12 @@
 #include "bpm/stages/deform.h"
 
 #include "bpm/dynamics/elastic_probe.h"
+#include "bpm/dynamics/node_exchange.h"
 #include "bpm/dynamics/stepper.h"
 #include "bpm/dynamics/take_snapshot.h"
 #include "bpm/io/input_error.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -27,6 +29,16 @@ double half_of_largest_grain(const Packing& packing) {
   return 0.5 * largest;
 }
 
+/// Of all grains, on all ranks, d. Collective.
+std::vector<Vector3> centres_of_grains(const MovingPacking& moving) {
+  std::vector<Vector3> centres(moving.layout.n_grains(), Vector3::Zero());
+  for (const int g : moving.layout.grains()) {
+    centres[g] = moving.state.position_sum(g) / moving.layout.n_nodes(g);
+  }
+  share_grains(moving, centres);
+  return centres;
+}
+
 } // namespace
 
 DeformDriver::DeformDriver(const DeformStage& stage) : stage_(stage), pressure_(stage.pressure) {
@@ -38,6 +50,9 @@ DeformDriver::DeformDriver(const DeformStage& stage) : stage_(stage), pressure_(
       fastest = drive.path.fastest();
       leading_ = c;
     }
+  }
+  if (leading_ >= 0 && stage_.component[leading_].path.kind != PrescribedStrain::Kind::ramp) {
+    meter_.emplace();
   }
 }
 
@@ -64,6 +79,9 @@ void DeformDriver::begin(Stepper& stepper) {
     first_target_[c] = drive.from_present ? present[c] : drive.stress_from.value_or(drive.stress);
   }
   settle_gains(stepper);
+  if (meter_) {
+    meter_->begin(centres_of_grains(stepper.moving()));
+  }
 }
 
 /// The gain of each servo from the packing's affine stiffness for its component, as that of the barostat.
@@ -194,6 +212,25 @@ void DeformDriver::add_tilts(const std::array<double, 6>& stress, Matrix3& map) 
   }
 }
 
+/// The evaluation that has just been made belongs to the strain before the step that is now counted.
+void DeformDriver::note_cycle(const Stepper& stepper, const std::array<double, 6>& stress) {
+  const PrescribedStrain& path = stage_.component[leading_].path;
+  const auto strain = [&](int steps) { return path.at(steps_.share_done(steps)); };
+  const CycleMeter::Sample sample = {.step = stepper.step(),
+                                     .cycles = path.cycles * steps_.share_done(-1),
+                                     .next_cycles = path.cycles * steps_.share_done(),
+                                     .strain = strain(-1),
+                                     .strain_before = strain(-2),
+                                     .strain_after = strain(0),
+                                     .stress = stress[leading_],
+                                     .pressure = stepper.pressure(),
+                                     .volume = stepper.moving().cell.evaluated_box().volume()};
+  if (meter_->add(sample)) {
+    meter_->end_cycle(sample, centres_of_grains(stepper.moving()), deformation_ * cycle_deformation_.inverse());
+    cycle_deformation_ = deformation_;
+  }
+}
+
 /// A target of zero is measured by the largest stress there is.
 void DeformDriver::note_held(const std::array<double, 6>& stress) {
   double largest = 0.0;
@@ -227,6 +264,9 @@ CellRates DeformDriver::update(Stepper& stepper) {
   steps_.count();
   const std::array<double, 6> stress = needs_stress() ? stress_of(stepper.moving()) : std::array<double, 6>{};
   note_held(stress);
+  if (meter_) {
+    note_cycle(stepper, stress);
+  }
   Matrix3 map = map_of_lengths(stepper, stress);
   add_tilts(stress, map);
   deformation_ = map * deformation_;
@@ -255,6 +295,12 @@ StageProgress DeformDriver::progress(const Stepper& stepper) const {
   }
   StageProgress progress;
   progress.done = steps_.share_done();
+  if (meter_) {
+    progress.driven = std::string("cycles of ") + cell_components[leading_];
+    progress.target = stage_.component[leading_].path.cycles;
+    progress.value = progress.target * progress.done;
+    return progress;
+  }
   progress.driven = std::string(cell_components[leading_]) + " strain";
   progress.target = stage_.component[leading_].path.at_end();
   progress.value = stage_.component[leading_].path.at(steps_.share_done());
@@ -271,6 +317,10 @@ void DeformDriver::archive(Archive& archive) {
   archive.field("gain", gain_);
   archive.field("first_target", first_target_);
   archive.field("least_distance", least_distance_);
+  if (meter_) {
+    archive.object("meter", *meter_);
+    archive.field("cycle_deformation", cycle_deformation_);
+  }
   for (int c = 0; c < 6; ++c) {
     archive.object(std::string("held_") + cell_components[c], held_[c]);
   }

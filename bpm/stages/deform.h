@@ -3,6 +3,7 @@
 
 #include "bpm/dynamics/stage_driver.h"
 #include "bpm/packing/cell_components.h"
+#include "bpm/stages/cycle_meter.h"
 #include "bpm/stages/held_pressure.h"
 #include "bpm/stages/prescribed_strain.h"
 #include "bpm/stages/timed_steps.h"
@@ -56,8 +57,8 @@ public:
 
   std::string name() const override { return stage_.kind; }
   void begin(Stepper& stepper) override;
-  bool needs_pressure() const override { return pressure_.is_held(); }
-  bool needs_stress() const override { return has(ComponentDrive::Kind::stress); }
+  bool needs_pressure() const override { return pressure_.is_held() || meter_; }
+  bool needs_stress() const override { return has(ComponentDrive::Kind::stress) || meter_; }
   CellRates update(Stepper& stepper) override;
   bool finished() const override { return steps_.finished(); }
   std::int64_t steps_left(const Stepper&) const override { return steps_.left(); }
@@ -68,12 +69,15 @@ public:
   StageProgress progress(const Stepper& stepper) const override;
   std::string report() const override;
   bool has_missed() const override;
+  /// Of its cycles, where the leading component makes any.
+  const StageTable* table() const override { return meter_ ? &meter_->table() : nullptr; }
   void archive(Archive& archive) override;
 
 private:
   using Kind = ComponentDrive::Kind;
   double leading_rate() const;
   bool has(Kind kind) const;
+  void note_cycle(const Stepper& stepper, const std::array<double, 6>& stress);
   void note_held(const std::array<double, 6>& stress);
   void settle_gains(Stepper& stepper);
   void check_path(const Stepper& stepper) const;
@@ -93,11 +97,13 @@ private:
   // Of the cell and the packing when the stage began, and what has become of the cell.
   Vector3 first_lengths_ = Vector3::Ones();
   double first_volume_ = 1.0;
-  Matrix3 deformation_ = Matrix3::Identity(); ///< F, as if the cell had never been flipped
-  std::array<double, 6> gain_{};              ///< of the servos, d/(k tau)
-  std::array<double, 6> first_target_{};      ///< k/d
-  std::vector<HeldPressureReport> held_;      ///< of the six stresses
-  double least_distance_ = 0.0;               ///< between opposite faces, d
+  Matrix3 deformation_ = Matrix3::Identity();       ///< F, as if the cell had never been flipped
+  std::array<double, 6> gain_{};                    ///< of the servos, d/(k tau)
+  std::array<double, 6> first_target_{};            ///< k/d
+  std::vector<HeldPressureReport> held_;            ///< of the six stresses
+  std::optional<CycleMeter> meter_;                 ///< of the leading component
+  Matrix3 cycle_deformation_ = Matrix3::Identity(); ///< F at the last sample of the cycle before
+  double least_distance_ = 0.0;                     ///< between opposite faces, d
 };
 
 } // namespace boba

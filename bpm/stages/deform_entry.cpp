@@ -112,6 +112,10 @@ void LoadingEntry::check(const SceneTable& table, const StageSurroundings& surro
   }
 }
 
+bool LoadingEntry::has_table() const {
+  return DeformDriver(stage_).table() != nullptr;
+}
+
 StageLength LoadingEntry::estimate(const StageContext&) const {
   return {.time = stage_.time};
 }

@@ -17,6 +17,7 @@ public:
   bool holds_pressure() const override { return stage_.pressure.has_value(); }
   bool has_ends() const override { return false; }
   bool shows_stress() const override { return true; }
+  bool has_table() const override;
   StageLength estimate(const StageContext& context) const override;
   std::unique_ptr<StageDriver> make_driver(const StageContext& context) const override;
   /// As the scene gives them.

@@ -20,7 +20,7 @@ std::vector<SceneKey> pressure_keys(const std::string& without) {
   };
 }
 
-ScenePressure::ScenePressure(const SceneTable& table)
+ScenePressure::ScenePressure(const SceneTable& table, bool others_use_gain)
     : table_(table.name()), pressure_(table.maybe_real("pressure")),
       normalised_(table.maybe_real("normalised_pressure")), gain_(table.maybe_real("gain")),
       rate_cap_(table.real("rate_cap", Barostat().rate_cap)) {
@@ -28,7 +28,7 @@ ScenePressure::ScenePressure(const SceneTable& table)
     table.fail("normalised_pressure", "is given together with pressure; give one of them");
   }
   for (const char* key : {"gain", "rate_cap"}) {
-    if (!is_given() && table.has(key)) {
+    if (!is_given() && !others_use_gain && table.has(key)) {
       table.fail(key, "needs pressure or normalised_pressure");
     }
   }

@@ -16,8 +16,9 @@ std::vector<SceneKey> pressure_keys(const std::string& without);
 /// The pressure that a stage's table gives, itself or relative to the grains' modulus.
 class ScenePressure {
 public:
+  /// \param others_use_gain gain and rate_cap have a use without a pressure too
   /// \throws InputError when both forms are given, or the barostat's keys without a pressure.
-  explicit ScenePressure(const SceneTable& table);
+  explicit ScenePressure(const SceneTable& table, bool others_use_gain = false);
   bool is_given() const { return pressure_ || normalised_; }
   /// The barostat with its target, P = P~ E / (2 - 2 nu^2) when the normalised pressure P~ was given; none without a
   /// pressure. \throws InputError when E and nu are needed and unknown.

@@ -47,6 +47,8 @@ public:
   virtual bool has_ends() const = 0;
   /// Does the run's table have all components of the stress? They are shown when one stage of the scene wants them.
   virtual bool shows_stress() const { return false; }
+  /// Does its driver have a table of its own (StageDriver::table)?
+  virtual bool has_table() const { return false; }
   /// For `boba check`, before anything runs.
   virtual StageLength estimate(const StageContext& context) const = 0;
   /// \throws InputError when a pressure that is given relative to E / (2 - 2 nu^2) cannot be known.

@@ -6,6 +6,8 @@
 #include "bpm/stages/hold.h"
 #include "bpm/stages/named_loadings.h"
 #include "bpm/stages/press.h"
+#include "bpm/stages/quasistatic.h"
+#include "bpm/stages/relax.h"
 #include "bpm/stages/shear.h"
 
 #include <algorithm>
@@ -25,7 +27,7 @@ std::vector<StageKind>& registered_stages() {
   static std::vector<StageKind> kinds = {
       kind_of<CompressEntry>(),  kind_of<HoldEntry>(),      kind_of<ShearEntry>(),   kind_of<PressEntry>(),
       kind_of<DeformEntry>(),    kind_of<UniaxialEntry>(),  kind_of<BiaxialEntry>(), kind_of<TriaxialEntry>(),
-      kind_of<OedometerEntry>(), kind_of<PureShearEntry>(),
+      kind_of<OedometerEntry>(), kind_of<PureShearEntry>(), kind_of<RelaxEntry>(),   kind_of<QuasistaticEntry>(),
   };
   return kinds;
 }

@@ -280,6 +280,58 @@ def non_affine(axes, runs):
     look.legend(axes)
 
 
+def _stage_tables(run, column):
+    """The tables of stages that have this column, and more than one row."""
+    return [(n, t) for n, t in sorted(run.stage_tables.items()) if column in t and len(t["step"]) > 1]
+
+
+def cycles(axes, runs):
+    """Storage and loss modulus of each cycle of strain."""
+    for label, run, colour in coloured(runs):
+        for number, table in _stage_tables(run, "storage_modulus_k/d"):
+            what = f"stage {number}" if len(_stage_tables(run, "storage_modulus_k/d")) > 1 else ""
+            for column, marker, symbol in (("storage_modulus_k/d", "o-", "$G'$"), ("loss_modulus_k/d", "s--", "$G''$")):
+                text = ", ".join(part for part in (label, what, symbol) if part)
+                axes.plot(table["cycle"], table[column], marker, ms=3, lw=1, color=colour, label=text)
+    _label(axes, "cycle", "modulus ($k/d$)", "moduli of the cycles")
+    axes.set_ylim(bottom=0)
+    axes.xaxis.get_major_locator().set_params(integer=True)
+    look.legend(axes)
+
+
+def cycle_return(axes, runs):
+    """How far grains are from where they were a cycle before, beside the cell's motion."""
+    for label, run, colour in coloured(runs):
+        for number, table in _stage_tables(run, "nonaffine_d"):
+            axes.plot(table["cycle"], table["nonaffine_d"], "o-", ms=3, lw=1, color=colour, label=label)
+    _label(axes, "cycle", "rms displacement in a cycle ($d$)", "does the packing come back?")
+    axes.set_ylim(bottom=0)
+    axes.xaxis.get_major_locator().set_params(integer=True)
+    look.legend(axes)
+
+
+def loops(axes, runs):
+    """Shear stress against shear strain where the strain goes to and fro."""
+    for label, run, colour in coloured(runs):
+        for number, _ in _stage_tables(run, "storage_modulus_k/d"):
+            rows = run.of_stage(run.table, number)
+            axes.plot(rows["strain"], rows["stress_xy_k/d"], lw=0.7, color=colour, label=label)
+    _label(axes, look.quantity("strain", "strain"), "stress $\\sigma_{xy}$ ($k/d$)", "stress in cycles of strain")
+    look.legend(axes)
+
+
+def quasistatic(axes, runs):
+    """Stress of the strained component at rest, step by step of strain."""
+    for label, run, colour in coloured(runs):
+        for number, table in _stage_tables(run, "largest_net_force_kd"):
+            stresses = [name for name in table if name.startswith("stress_")]
+            moving = max(stresses, key=lambda name: np.ptp(table[name]))
+            text = _text(label, f"stage {number}") if len(run.stage_tables) > 1 else label
+            axes.plot(table["strain"], table[moving], "o-", ms=3, lw=1, color=colour, label=text)
+    _label(axes, look.quantity("strain", "strain"), "stress ($k/d$)", "steps of strain at rest")
+    look.legend(axes)
+
+
 def rheology(axes, runs, window):
     """mu (and phi) against the inertial number, one point for each run, averaged over a window of strain."""
     second = None
@@ -344,6 +396,12 @@ def available(runs, window):
     offer("packing_fraction", density, [pair for pair in packings if _varies(pair[1], "phi_reference")])
     offer("pressure", pressure, [pair for pair in packings if _varies(pair[1], "P_k/d")])
     offer("press", press, [pair for pair in tables if _is_pressed(pair[1])])
+    cyclic = [pair for pair in tables if _stage_tables(pair[1], "storage_modulus_k/d")]
+    offer("cycles", cycles, cyclic)
+    offer("cycle_return", cycle_return, cyclic)
+    offer("loops", loops, [pair for pair in cyclic if _varies(pair[1], "stress_xy_k/d")])
+    at_rest = [pair for pair in tables if _stage_tables(pair[1], "largest_net_force_kd")]
+    offer("quasistatic", quasistatic, at_rest)
     offer("structure_factor", structure_factor, with_tables("scattering"))
     offer("form_factor", form_factor, with_tables("scattering"))
     offer("volume", volume, with_tables("shape", "grains"))

@@ -50,6 +50,12 @@ class Run:
             raise KeyError(f"{path}: there is no such table; there are: {', '.join(self.measures) or 'none'}")
         return self._read(path)
 
+    @property
+    def stage_tables(self) -> dict[int, Table]:
+        """The tables that stages wrote when they ended (stages/stage-N.csv), by the stage's number."""
+        paths = (self.folder / "stages").glob("stage-*.csv")
+        return {int(path.stem.removeprefix("stage-")): self._read(path) for path in sorted(paths)}
+
     def rows(self, name: str, step: int) -> Table:
         """The rows of one frame of a table of measures. \\throws KeyError where that frame was not measured."""
         table = self.measure(name)

@@ -11,6 +11,7 @@
 #include <Eigen/LU>
 #include <Eigen/SparseCore>
 #include <cmath>
+#include <complex>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +30,8 @@ class StaticStiffness {
 public:
   StaticStiffness(const GrainTemplate& grain, double alpha) : grain_(grain) {
     const Eigen::Index n = 3 * grain.n_nodes(), n_bonds = std::ssize(grain.bonds);
-    Sparse stretch(n_bonds, n), sums(grain.n_nodes(), n_bonds), pairs(n_bonds, grain.n_nodes());
+    stretch_.resize(n_bonds, n);
+    Sparse sums(grain.n_nodes(), n_bonds), pairs(n_bonds, grain.n_nodes());
     std::vector<Eigen::Triplet<double>> b, q, w;
     Eigen::VectorXd volume = Eigen::VectorXd::Zero(grain.n_nodes());
     for (const Bond& bond : grain.bonds) {
@@ -50,25 +52,41 @@ public:
         w.emplace_back(k, node, -alpha / (volume[bond.i] + volume[bond.j]));
       }
     }
-    stretch.setFromTriplets(b.begin(), b.end());
+    stretch_.setFromTriplets(b.begin(), b.end());
     sums.setFromTriplets(q.begin(), q.end());
     pairs.setFromTriplets(w.begin(), w.end());
     tension_ = pairs * sums;
     tension_.diagonal() += own;
-    const Eigen::MatrixXd stiffness = Eigen::MatrixXd(stretch.transpose() * tension_ * stretch);
+    const Eigen::MatrixXd stiffness = Eigen::MatrixXd(stretch_.transpose() * tension_ * stretch_);
     // Without the first node, which is held.
     const Eigen::PartialPivLU<Eigen::MatrixXd> solver(stiffness.bottomRightCorner(n - 3, n - 3));
     for (int c = 0; c < 6; ++c) {
       Eigen::VectorXd s = affine_stretch(c);
-      const Eigen::VectorXd force = -(stretch.transpose() * (tension_ * s));
+      const Eigen::VectorXd force = -(stretch_.transpose() * (tension_ * s));
       Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
       u.tail(n - 3) = solver.solve(force.tail(n - 3));
-      s += stretch * u;
+      s += stretch_ * u;
       tensor_.col(c) = stress(tension_ * s);
     }
   }
 
   const Voigt& tensor() const { return tensor_; }
+
+  /// Stress over strain of component c when it oscillates at the angular frequency omega (1/tau), with
+  /// k = m = gamma = 1: (A + i omega C - omega^2) u = -B^T T s, C = B^T B. The cell's own motion is not damped.
+  std::complex<double> modulus(int c, double omega) const {
+    using Complex = std::complex<double>;
+    const Eigen::MatrixXd b = stretch_, a = Eigen::MatrixXd(stretch_.transpose() * tension_ * stretch_);
+    const Eigen::MatrixXcd m = a.cast<Complex>() + Complex(0.0, omega) * (b.transpose() * b).cast<Complex>() -
+                               omega * omega * Eigen::MatrixXcd::Identity(a.rows(), a.cols());
+    const Eigen::VectorXd s = affine_stretch(c);
+    const Eigen::VectorXd right = -(stretch_.transpose() * (tension_ * s));
+    const Eigen::VectorXcd u = m.partialPivLu().solve(right.cast<Complex>());
+    const Eigen::VectorXd in_phase = stretch_ * u.real(), out_of_phase = stretch_ * u.imag();
+    // The tension of the dashpots is i omega times the stretch of the nodes.
+    return {stress(tension_ * (s + in_phase) - omega * out_of_phase)[c],
+            stress(tension_ * out_of_phase + omega * in_phase)[c]};
+  }
 
 private:
   Vector3 direction(const Bond& bond) const {
@@ -98,7 +116,7 @@ private:
   }
 
   const GrainTemplate& grain_;
-  Sparse tension_;
+  Sparse stretch_, tension_;
   Voigt tensor_;
 };
 
@@ -212,6 +230,68 @@ TEST_P(PeriodicModuli, EqualTheStaticTensorForBothSigns) {
         const double now = simulation.box().lengths()[c] / packing.box.lengths()[c] - 1.0;
         EXPECT_NEAR(now, expected.strain[c], 2e-3 * std::abs(strain)) << test.name << strain << cell_components[c];
       }
+    }
+  }
+}
+
+/// Runs the scene's second stage alone and hands its driver out.
+std::unique_ptr<StageDriver> run_first(const Scene& scene, const Packing& packing) {
+  std::vector<PreparedStage> stages = prepare_stages(scene, stage_context(scene, packing, {}));
+  Simulation simulation(packing, scene.material, scene.options);
+  simulation.run(stages.front().index, *stages.front().driver, {});
+  return std::move(stages.front().driver);
+}
+
+TEST_P(PeriodicModuli, OfQuasistaticStepsEqualTheStaticTensor) {
+  const double alpha = GetParam();
+  const Packing packing =
+      make_start(scene_of("type = \"hold\"\ntime = 1.0", alpha), PoissonTable::installed(), [](const std::string&) {});
+  const Voigt tensor = StaticStiffness(*packing.templates.front(), alpha).tensor();
+  for (int c = 0; c < 6; ++c) {
+    for (const double strain : {2e-4, -2e-4}) {
+      const Scene scene = scene_of(fmt::format("type = \"quasistatic\"\ncomponent = \"{}\"\nstrain = "
+                                               "{}\nsteps = 2\nforce_tolerance = 1e-9",
+                                               cell_components[c], strain),
+                                   alpha);
+      const auto driver = run_first(scene, packing);
+      const StageTable& table = *driver->table();
+      ASSERT_EQ(table.rows.size(), 3U);
+      for (const std::size_t row : {1, 2}) {
+        EXPECT_NEAR(table.rows[row].values.at(8), tensor(c, c), 2e-3 * tensor(c, c)) << cell_components[c] << strain;
+        EXPECT_NEAR(table.rows[row].values.at(0), 0.5 * static_cast<double>(row) * strain, 1e-15);
+        for (int other = 0; other < 6; ++other) {
+          EXPECT_NEAR(table.rows[row].values.at(1 + other), tensor(other, c) * table.rows[row].values[0],
+                      2e-3 * tensor(c, c) * std::abs(strain))
+              << cell_components[c] << " " << cell_components[other];
+        }
+        EXPECT_LT(table.rows[row].values.at(9), 1e-9);
+      }
+    }
+  }
+}
+
+/// Storage and loss modulus of small oscillations are those of the linear network with its inertia and dashpots.
+TEST_P(PeriodicModuli, OfCyclesEqualTheLinearNetwork) {
+  const double alpha = GetParam();
+  const Packing packing =
+      make_start(scene_of("type = \"hold\"\ntime = 1.0", alpha), PoissonTable::installed(), [](const std::string&) {});
+  const StaticStiffness network(*packing.templates.front(), alpha);
+  for (const char* component : {"xy", "yz", "zz"}) {
+    const int c = std::string(component) == "zz" ? 2 : std::string(component) == "xy" ? 3 : 5;
+    for (const double period : {30.0, 10.0}) {
+      const Scene scene =
+          scene_of(fmt::format("type = \"deform\"\n{}_amplitude = 1e-4\nperiod = {}\ncycles = 8", component, period),
+                   alpha, "xx_rate = 0.0", {"run.dt=0.02"});
+      const auto driver = run_first(scene, packing);
+      const StageTable& table = *driver->table();
+      ASSERT_EQ(table.rows.size(), 8U);
+      const std::complex<double> expected = network.modulus(c, 2.0 * M_PI / period);
+      const std::vector<double>& last = table.rows.back().values;
+      EXPECT_NEAR(last.at(1), expected.real(), 0.01 * std::abs(expected)) << component << " " << period;
+      EXPECT_NEAR(last.at(2), expected.imag(), 0.01 * std::abs(expected)) << component << " " << period;
+      // A cycle takes pi G'' A^2 per volume.
+      EXPECT_NEAR(last.at(3), M_PI * last.at(2) * 1e-8, 2e-3 * M_PI * std::abs(expected) * 1e-8);
+      EXPECT_LT(last.at(7), 1e-9); // one grain: no motion beside that of the whole
     }
   }
 }

@@ -194,5 +194,47 @@ class Gaps(ProgramTest):
         self.assertEqual([r for r in rows if r != "x"], [r for i, r in enumerate(whole) if i != 5])
 
 
+class StageTables(ProgramTest):
+    """A stage's own table is written when the stage ends; a run that continues misses it when it is gone."""
+
+    SCENE = """[[template]]
+name = "grain"
+nodes = 30
+[[species]]
+count = 8
+alpha = 1.0
+[[stage]]
+type = "insert"
+packing_fraction = 0.2
+[[stage]]
+type = "quasistatic"
+strain = 0.01
+steps = 2
+force_tolerance = 1e-3
+[[stage]]
+type = "hold"
+time = 1e6
+"""
+
+    def test_a_lost_table_is_told(self):
+        (self.folder / "steps.toml").write_text(self.SCENE)
+        run = self.start("run", "steps.toml", "--output", "o")
+        self.wait_for("o/stages/stage-1.csv")
+        run.send_signal(signal.SIGTERM)
+        self.assertEqual(run.wait(60), 75)
+        table = self.folder / "o/stages/stage-1.csv"
+        text = table.read_text()
+        self.assertEqual([line.split(",")[1] for line in text.splitlines()], ["strain", "0", "0.005", "0.01"])
+        table.unlink()
+        self.assert_refused(self.boba("resume", "o"), "stages/stage-1.csv is missing", "--accept-gaps")
+        table.write_text(text.replace("0.005", "0.004"))
+        self.assert_refused(self.boba("resume", "o"), "stages/stage-1.csv was edited")
+        table.write_text(text)
+        self.assertEqual(self.boba("resume", "o", "--quiet", "--wall-time", "0.1").returncode, 75)
+        self.assertEqual(
+            self.boba("run", "steps.toml", "--output", "o", "--force", "--wall-time", "0.1").returncode, 75
+        )
+
+
 if __name__ == "__main__":
     main()
