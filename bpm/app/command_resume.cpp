@@ -60,7 +60,7 @@ std::vector<std::string> check_output(const LatestCheckpoint& checkpoint, const 
   } catch (const SavedStateError& error) {
     throw InputError(fmt::format("{}: the run cannot continue: {}", checkpoint.path.string(), error.what()));
   }
-  const std::vector<std::string> gaps = missing_output(folder, record);
+  std::vector<std::string> gaps = missing_output(folder, record);
   if (!gaps.empty() && !accept) {
     throw InputError(fmt::format("{}: the run cannot be continued without gaps: {}; --accept-gaps continues it all "
                                  "the same",

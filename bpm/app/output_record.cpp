@@ -100,7 +100,7 @@ std::string missing_from_list(const fs::path& list, const std::vector<std::strin
 
 } // namespace
 
-OutputRecord::OutputRecord(OutputFolder folder, std::vector<std::string> names) : folder_(std::move(folder)) {
+OutputRecord::OutputRecord(OutputFolder folder, const std::vector<std::string>& names) : folder_(std::move(folder)) {
   for (const std::string& name : names) {
     has_trajectory_ = has_trajectory_ || name == "trajectory.h5";
     has_vtk_ = has_vtk_ || name == "vtk/packing.pvd";

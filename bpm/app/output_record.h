@@ -21,7 +21,7 @@ inline const std::string output_record_name = "output.files";
 class OutputRecord {
 public:
   /// \param names as files_of_run gives them
-  OutputRecord(OutputFolder folder, std::vector<std::string> names);
+  OutputRecord(OutputFolder folder, const std::vector<std::string>& names);
 
   /// A line a file: "LENGTH CRC NAME", or "frames N up to STEP NAME" for the trajectory. All that was written is in the
   /// files; `last_frame` is the step of the trajectory's last one. A frame of the step of the checkpoint may still come

@@ -40,7 +40,10 @@ Timings timings_of(const MovingPacking& moving) {
 
 std::size_t bytes_of(const MovingPacking& moving) {
   const Packing& packing = moving.packing;
-  return moving.state.bytes() + moving.forces.contact_bytes() +
+  const ForceSums& sums = moving.forces.sums();
+  return moving.state.bytes() + moving.layout.bytes() + moving.forces.contact_bytes() +
+         sums.grains.capacity() * sizeof(GrainSums) + sums.contacts.capacity() * sizeof(kernels::ContactSums) +
+         packing.grains.capacity() * sizeof(Grain) +
          (packing.position.capacity() + packing.velocity.capacity()) * sizeof(Vector3) +
          packing.id.capacity() * sizeof(std::int64_t);
 }

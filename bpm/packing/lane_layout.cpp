@@ -126,6 +126,14 @@ void LaneLayout::add_block(const Packing& packing, const std::vector<int>& grain
   blocks_.push_back(std::move(block));
 }
 
+std::size_t LaneLayout::bytes() const {
+  std::size_t bytes = slots_.capacity() * sizeof(Slot) + grains_.capacity() * sizeof(int);
+  for (const Block& block : blocks_) {
+    bytes += sizeof(Block) + block.grain.capacity() * sizeof(int) + block.alpha.capacity() * sizeof(double);
+  }
+  return bytes;
+}
+
 double LaneLayout::filled() const {
   double used = 0.0, all = 0.0;
   for (const Block& block : blocks_) {

@@ -4,6 +4,7 @@
 #include "bpm/packing/max_lanes.h"
 #include "bpm/packing/packing.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -81,6 +82,8 @@ public:
   }
   /// Most bonds that any node of a grain that remembers is the first of, in the whole packing; 0 when there is none.
   int memory_slots() const { return memory_slots_; }
+  /// Bytes of the layout itself.
+  std::size_t bytes() const;
   /// Share of lanes that carry a grain, weighted with nodes (1 when no lane is idle).
   double filled() const;
 

@@ -3,6 +3,7 @@
 
 #include "bpm/io/input_error.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
 #include <limits>
@@ -39,12 +40,14 @@ SceneSize expected_size(const Scene& scene) {
   for (const SceneTemplate& t : scene.templates) {
     size.template_nodes += expected_nodes(t.spec);
   }
+  const bool only_single_nodes =
+      std::ranges::all_of(scene.templates, [](const SceneTemplate& t) { return expected_nodes(t.spec) == 1.0; });
   double of_grains = 0.0;
   for (const SceneSpecies& species : scene.species) {
     const double nodes = expected_nodes(scene.templates[species.template_index].spec);
     const auto count = static_cast<double>(species.count);
     size.nodes += count * nodes;
-    of_grains += count * (nodes == 1.0 ? bytes_per_single_node : bytes_per_grain);
+    of_grains += count * (only_single_nodes ? bytes_per_single_node : bytes_per_grain);
   }
   size.bytes = of_grains + size.nodes * bytes_per_node + size.template_nodes * bytes_per_template_node;
   return size;

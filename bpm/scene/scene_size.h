@@ -9,9 +9,9 @@ namespace boba {
 
 /// Memory of a run beyond its templates, for each node (bytes): the engine's state and one copy for files.
 constexpr double bytes_per_node = 250.0;
-/// The same for each grain: its place, and its share of the pairs with neighbours in a dense packing. Measured 4.8 kB
-/// and 16 kB for grains of 1 and of 20 nodes at a packing fraction of 0.2.
-constexpr double bytes_per_single_node = 10e3, bytes_per_grain = 16e3;
+/// The same for each grain: its place, and its share of the pairs with neighbours in a dense packing. Measured 1 kB for
+/// each of 20000 single nodes, which have one list, and 16 kB for grains of 20 nodes, at a packing fraction of 0.2.
+constexpr double bytes_per_single_node = 1.2e3, bytes_per_grain = 16e3;
 
 /// How large a scene is, from its numbers alone.
 struct SceneSize {
@@ -23,7 +23,7 @@ struct SceneSize {
 /// Nodes a template will have, about, before it is built.
 double expected_nodes(const TemplateSpec& spec);
 
-/// For scenes that place their own grains; zero for a start from files.
+/// For scenes that place their own grains, on one rank; zero for a start from files.
 SceneSize expected_size(const Scene& scene);
 
 /// Memory that the system can give without swapping (bytes), from /proc/meminfo.

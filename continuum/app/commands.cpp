@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <iostream>
 #include <optional>
+#include <stdexcept>
 
 namespace boba::continuum {
 namespace {
@@ -21,6 +22,10 @@ using nlohmann::json;
 /// Linear kinematics are doubtful beyond this a/R, and beyond this nominal strain of a cylinder.
 constexpr double largest_linear_contact = 0.3;
 constexpr double largest_linear_strain = 0.1;
+
+/// Beyond this ratio rounding keeps Newton's method of finite kinematics from its tolerance: spheres and cylinders
+/// settle at 0.4995 by both laws, spheres do not at 0.4999.
+constexpr double largest_poisson_of_finite = 0.4995;
 
 struct Options {
   double radius = 1, height = 2, young = 1, poisson = 0.25, slab = 0;
@@ -115,6 +120,12 @@ private:
       return nullptr;
     }
     check(material);
+    if (material.poisson > largest_poisson_of_finite) {
+      throw std::invalid_argument(fmt::format("poisson = {} is not allowed with finite kinematics: it must lie in (-1, "
+                                              "{}]; beyond, the rounding of the change of volume keeps Newton's "
+                                              "method from settling. Linear kinematics take all below 0.5",
+                                              material.poisson, largest_poisson_of_finite));
+    }
     if (options_.law == "neo-hookean") {
       if (material.poisson < 0) {
         warnings

@@ -102,6 +102,14 @@ TEST_F(Program, WarnsOnceOfLargeStrain) {
   EXPECT_EQ(count(cylinder.err, "strain 0.2 is beyond"), 1) << cylinder.err;
 }
 
+TEST_F(Program, TellsTheRangeOfFiniteKinematicsAtOnce) {
+  const std::string sphere = "sphere --radius 1 --young 1 --kinematics finite --no-fields --approach 0.02 --poisson ";
+  const ProgramResult wrong = result_of(sphere + "0.4999");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_EQ(count(wrong.err, "poisson = 0.4999 is not allowed with finite kinematics"), 1) << wrong.err;
+  EXPECT_EQ(run(sphere + "0.4995"), 0);
+}
+
 /// `boba continuum` is the same program: same files, same messages, same exit codes.
 TEST_F(Program, IsStartedByBoba) {
   const std::vector<std::string> chain = {BOBA_PROGRAM, "continuum"};

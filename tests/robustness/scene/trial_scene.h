@@ -87,6 +87,7 @@ private:
         {"deform", {{"time", "1.0"}, {key_.starts_with("xx") ? "yy_stress" : "xx_stress", "0.0"}}},
         {"uniaxial", {{"strain", "0.01"}, {"rate", "1e-3"}}},
         {"oedometer", {{"strain", "0.01"}, {"rate", "1e-3"}}},
+        {"quasistatic", {{"strain", "0.01"}}},
         {"pure_shear", {{"strain", "0.01"}, {"rate", "1e-3"}}},
         {"triaxial", {{"strain", "0.01"}, {"rate", "1e-3"}, {"confining_pressure", "0.1"}}},
         {"biaxial", {{"strain", "0.01"}, {"rate", "1e-3"}, {"confining_pressure", "0.1"}}}};
