@@ -10,7 +10,7 @@ namespace boba {
 
 /// Most pieces that a block is split into, and segments of a block that can be split.
 inline constexpr int most_pieces = 4;
-/// Nodes a grain from which a block can be split: pieces of fewer have mostly bonds with each other.
+/// Nodes per grain from which a block can be split: pieces of fewer have mostly bonds with each other.
 inline constexpr int least_nodes_to_split = 1000;
 
 inline int segments_of(int n_nodes) {

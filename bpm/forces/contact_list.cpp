@@ -77,41 +77,9 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
     guaranteed = neighbour_guarantee(box);
   }
   follow_ghosts();
-  const int n_pairs = static_cast<int>(pairs_.size());
-  std::int64_t searched = 0;
-#pragma omp parallel for schedule(dynamic, 4) reduction(min : guaranteed) reduction(+ : searched)
-  for (int p = 0; p < n_pairs; ++p) {
-    ContactPair& pair = pairs_[p];
-    double kept = search_holds(pair) ? guarantee(pair, box) : 0.0;
-    if (kept < diameter_ + reserve()) {
-      search(pair, box, *network_of_grain[pair.a]);
-      kept = guarantee(pair, box);
-      ++searched;
-    } else {
-      add_moved(pair, *network_of_grain[pair.a]);
-    }
-    add_followed(pair, box, *network_of_grain[pair.a]);
-    add_broken(pair);
-    guaranteed = std::min(guaranteed, kept);
-  }
-  ++counts_.updates;
-  counts_.pairs += searched;
-#pragma omp parallel for schedule(dynamic, 1)
-  for (const int g : layout_.grains()) {
-    relist(g);
-  }
-#pragma omp parallel for schedule(dynamic, 1)
-  for (const int g : ghosts_) {
-    relist(g);
-  }
-  for (ContactPair& pair : pairs_) {
-    pair.changed = false;
-  }
-  for (const int g : layout_.grains()) {
-    counts_.grains += grains_[g].all_noted ? 1 : 0;
-    counts_.nodes += static_cast<std::int64_t>(grains_[g].moved.size());
-    counts_.followed += static_cast<std::int64_t>(grains_[g].followed.size());
-  }
+  guaranteed = std::min(guaranteed, bring_pairs_up_to_date(box, network_of_grain));
+  relist_all();
+  note_counts();
   choose_fast_motion();
   for (TrackedGrain& grain : grains_) {
     grain.all_noted = false;
@@ -128,6 +96,55 @@ bool ContactList::update(const LaneState& state, const Box& box, const Networks&
   built_ = true;
   broken_changed_ = false;
   return true;
+}
+
+/// Searches the pairs whose candidates no longer hold, and adds what moved, what is followed and what broke to all.
+/// Returns the least distance that unlisted nodes of any pair keep, d.
+double ContactList::bring_pairs_up_to_date(const Box& box, const Networks& network_of_grain) {
+  const int n_pairs = static_cast<int>(pairs_.size());
+  double guaranteed = std::numeric_limits<double>::infinity();
+  std::int64_t searched = 0;
+#pragma omp parallel for schedule(dynamic, 4) reduction(min : guaranteed) reduction(+ : searched)
+  for (int p = 0; p < n_pairs; ++p) {
+    ContactPair& pair = pairs_[p];
+    double kept = search_holds(pair) ? guarantee(pair, box) : 0.0;
+    if (kept < diameter_ + reserve()) {
+      search(pair, box, *network_of_grain[pair.a]);
+      kept = guarantee(pair, box);
+      ++searched;
+    } else {
+      add_moved(pair, *network_of_grain[pair.a]);
+    }
+    add_followed(pair, box, *network_of_grain[pair.a]);
+    add_broken(pair);
+    guaranteed = std::min(guaranteed, kept);
+  }
+  counts_.pairs += searched;
+  return guaranteed;
+}
+
+/// The nodes in candidates of every grain whose pairs changed, those of other ranks included.
+void ContactList::relist_all() {
+#pragma omp parallel for schedule(dynamic, 1)
+  for (const int g : layout_.grains()) {
+    relist(g);
+  }
+#pragma omp parallel for schedule(dynamic, 1)
+  for (const int g : ghosts_) {
+    relist(g);
+  }
+  for (ContactPair& pair : pairs_) {
+    pair.changed = false;
+  }
+}
+
+void ContactList::note_counts() {
+  ++counts_.updates;
+  for (const int g : layout_.grains()) {
+    counts_.grains += grains_[g].all_noted ? 1 : 0;
+    counts_.nodes += static_cast<std::int64_t>(grains_[g].moved.size());
+    counts_.followed += static_cast<std::int64_t>(grains_[g].followed.size());
+  }
 }
 
 /// Broken bonds of a grain are always candidates. With nodes that move fast they are always near too, since that is
@@ -152,13 +169,7 @@ void ContactList::list_broken() {
   for (ContactPair& pair : pairs_) {
     add_broken(pair);
   }
-#pragma omp parallel for schedule(dynamic, 1)
-  for (const int g : layout_.grains()) {
-    relist(g);
-  }
-  for (ContactPair& pair : pairs_) {
-    pair.changed = false;
-  }
+  relist_all();
   broken_changed_ = false;
 }
 

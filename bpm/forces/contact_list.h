@@ -160,7 +160,10 @@ private:
   static void add_candidates(ContactPair& pair, NodePairs& found, const NetworkData& network);
   bool search_holds(const ContactPair& pair) const;
   double guarantee(const ContactPair& pair, const Box& box) const;
+  double bring_pairs_up_to_date(const Box& box, const Networks& network_of_grain);
   void relist(int grain);
+  void relist_all();
+  void note_counts();
   std::vector<std::int32_t> nodes_in(int grain, std::vector<kernels::NodePair> ContactPair::*list) const;
   GrainFrame second_frame(const ContactPair& pair, const Box& box) const;
 

@@ -54,7 +54,7 @@ ScatteringAmplitudes summed_amplitudes(const Box& box, const GrainNodes& grains,
 /// P_F, I and S = I / P_F on the reciprocal lattice of the box up to q_max, averaged in shells of |q|.
 ///
 /// A shell's S is the ratio of its mean I to its mean P_F (P_F alone has zeros). Shells without wave vectors are left
-/// out. As q -> 0, P_F -> N (nodes a grain); at large q P_F -> 1 for nodes without order.
+/// out. As q -> 0, P_F -> N (nodes per grain); at large q P_F -> 1 for nodes without order.
 /// \throws std::invalid_argument for options out of range or a box that is not periodic.
 /// Source: docs/notation.md, "scattering, structure factor".
 std::vector<ScatteringShell> scattering(const Box& box, const GrainNodes& grains, const ScatteringOptions& options,

@@ -224,7 +224,7 @@ json of_loads(const json& loads, const char* name) {
   return values;
 }
 
-/// Slope of the force from the previous load, both sides alike; none where the law was fitted anew between them.
+/// Slope of the force from the previous load, both sides alike; none where the law was fitted again between them.
 json stiffness_of_models(const json& models, std::size_t load) {
   json values = json::object();
   for (const auto& [model, loads] : models.items()) {

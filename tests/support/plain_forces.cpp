@@ -38,15 +38,14 @@ void add(PlainForces& sums, std::size_t i, const Pair& pair, Real f, double viri
   }
 }
 
-} // namespace
+using Bonded = std::set<std::pair<std::int64_t, std::int64_t>>;
 
-PlainForces plain_forces(const Packing& packing, const Material& m, int n_images, const Matrix3& velocity_of_cell) {
-  PlainForces sums;
+/// Adds the forces of the whole bonds, and tells who is bonded to whom.
+Bonded add_bonds(const Packing& packing, const Material& m, PlainForces& sums) {
   const std::vector<Vector3>& x = packing.position;
   const std::vector<Vector3>& v = packing.velocity;
-  sums.force.assign(x.size(), Vector3::Zero());
   const std::vector<std::int64_t> first = packing.first_nodes();
-  std::set<std::pair<std::int64_t, std::int64_t>> bonded;
+  Bonded bonded;
   for (int g = 0; g < packing.n_grains(); ++g) {
     std::vector<Real> volume(packing.template_of(g).n_nodes(), 0), volume0 = volume;
     const double limit = packing.grains[g].breaking.strain;
@@ -79,6 +78,14 @@ PlainForces plain_forces(const Packing& packing, const Material& m, int n_images
       add(sums, j, pair, -f, 0.0);
     }
   }
+  return bonded;
+}
+
+/// Adds the forces of all other pairs, images included; each contact counts twice.
+void add_contacts(const Packing& packing, const Material& m, int n_images, const Matrix3& velocity_of_cell,
+                  const Bonded& bonded, PlainForces& sums) {
+  const std::vector<Vector3>& x = packing.position;
+  const std::vector<Vector3>& v = packing.velocity;
   const auto& periodic = packing.box.periodic();
   const auto images = [&](int axis) { return periodic[axis] ? n_images : 0; };
   std::vector<Vector3> shifts, shift_velocities;
@@ -112,6 +119,15 @@ PlainForces plain_forces(const Packing& packing, const Material& m, int n_images
       }
     }
   }
+}
+
+} // namespace
+
+PlainForces plain_forces(const Packing& packing, const Material& m, int n_images, const Matrix3& velocity_of_cell) {
+  PlainForces sums;
+  sums.force.assign(packing.position.size(), Vector3::Zero());
+  const Bonded bonded = add_bonds(packing, m, sums);
+  add_contacts(packing, m, n_images, velocity_of_cell, bonded, sums);
   sums.n_contacts /= 2;
   return sums;
 }

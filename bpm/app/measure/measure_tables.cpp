@@ -52,6 +52,22 @@ Tensor6 total_stress(const std::vector<Tensor6>& grains, const Box& box) {
   return total;
 }
 
+/// Those of the program's own measures. \throws std::invalid_argument when two measures write a table of one name.
+void add_outside_tables(const MeasurePlan& plan, std::vector<MeasureTable>& tables) {
+  for (const auto& measure : make_outside_measures(plan.outside)) {
+    for (const MeasureTable& outside : measure->tables()) {
+      tables.push_back({outside.name, frame_columns});
+      tables.back().columns.insert(tables.back().columns.end(), outside.columns.begin(), outside.columns.end());
+    }
+  }
+  std::set<std::string> names;
+  for (const MeasureTable& written : tables) {
+    if (!names.insert(written.name).second) {
+      throw std::invalid_argument(fmt::format("measure: two measures write a table '{}'", written.name));
+    }
+  }
+}
+
 } // namespace
 
 MeasureTables::MeasureTables(std::filesystem::path folder, const Topology& topology, MeasurePlan plan,
@@ -138,18 +154,7 @@ std::vector<MeasureTable> MeasureTables::tables_of(const MeasurePlan& plan) {
         {"non_affine_square_d2", "d2min_mean_d2", "changed_share", "lost_per_grain", "gained_per_grain"});
   table(motion, "grain_motion",
         {"grain", "displacement_x_d", "displacement_y_d", "displacement_z_d", "d2min_d2", "lost", "gained"});
-  for (const auto& measure : make_outside_measures(plan.outside)) {
-    for (const MeasureTable& outside : measure->tables()) {
-      tables.push_back({outside.name, frame_columns});
-      tables.back().columns.insert(tables.back().columns.end(), outside.columns.begin(), outside.columns.end());
-    }
-  }
-  std::set<std::string> names;
-  for (const MeasureTable& written : tables) {
-    if (!names.insert(written.name).second) {
-      throw std::invalid_argument(fmt::format("measure: two measures write a table '{}'", written.name));
-    }
-  }
+  add_outside_tables(plan, tables);
   return tables;
 }
 

@@ -33,7 +33,7 @@ inline std::uint64_t random_bits(std::uint64_t number) {
 constexpr double nobody = 1e30;
 
 /// Doubles: x <- map x + shift + dt v. Fixed point: the origin follows the map outside, the coordinates move by
-/// (map - 1) x + dt v, rounded up or down to quanta with the odds that make the mean exact, drawn anew for every step,
+/// (map - 1) x + dt v, rounded up or down to quanta with the odds that make the mean exact, drawn again for every step,
 /// node and component: however slow a drift, none of it is lost. (A sequence that only fills (0, 1) evenly will not do:
 /// velocities answer to the last rounding, and grains creep.)
 template <class S, bool mapped, class Coordinate = typename S::Coordinate, class Real = typename S::Real>

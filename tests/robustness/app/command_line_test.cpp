@@ -195,7 +195,7 @@ TEST(CommandLine, CheckSaysWhatWouldRunAndFailsAnUnstableStep) {
   EXPECT_EQ(boba({"check", "scene.toml", "--set", "run.dt=0.9"}, folder).exit_code, 3);
 }
 
-TEST(CommandLine, SiblingsAreStartedOrNamed) {
+TEST(CommandLine, OtherProgramsAreStartedOrNamed) {
   const TemporaryFolder folder;
   for (const char* name : {"continuum", "calibrate"}) {
     const ProgramResult result = boba({name, "--help"}, folder);

@@ -32,7 +32,7 @@ std::array<double, 6> pressure(FrameStress& stress, const Snapshot& snapshot) {
 
 class FrameStressOfLammps : public testing::TestWithParam<Case> {};
 
-/// Late frames: LAMMPS's pressure belongs to the velocities half a step before the dumped ones, which are found anew.
+/// Late frames: LAMMPS's pressure belongs to the velocities half a step before the dumped ones, which are found again.
 TEST_P(FrameStressOfLammps, AgreesToRounding) {
   const Case& c = GetParam();
   const std::string name = c.cell + ".a" + c.alpha;

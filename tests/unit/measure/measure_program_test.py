@@ -96,14 +96,14 @@ class Program(unittest.TestCase):
 
     def test_forces_evaluated_anew_give_the_stress_of_the_run(self):
         run = boba.open(self.folder / "run")
-        done = boba_program(self.folder, "measure", "run", "--output", "anew", "--what", "stress")
+        done = boba_program(self.folder, "measure", "run", "--output", "again", "--what", "stress")
         self.assertEqual(done.returncode, 0, done.stderr)
-        anew, table = boba.open(self.folder / "run", self.folder / "anew").measure("stress"), run.table
+        again, table = boba.open(self.folder / "run", self.folder / "again").measure("stress"), run.table
         stage = {step: k for k, step in enumerate(table["step"])}  # the last row of a step: where a stage began
-        self.assertTrue((anew["with_damping"] == 1).all())
+        self.assertTrue((again["with_damping"] == 1).all())
         moduli = 2.0  # k/d, more than the bulk and shear moduli of this packing (a grain's E is 4)
         compared = 0
-        for k, step in enumerate(anew["step"]):
+        for k, step in enumerate(again["step"]):
             row = stage[step]
             p, mu = table["P_k/d"][row], table["mu"][row]
             if step == 0:
@@ -111,16 +111,16 @@ class Program(unittest.TestCase):
             # A resting cell: the same numbers. A moving one has moved by one step since its forces were evaluated.
             still = row == len(table["step"]) - 1
             stress_change = 1e-9 if still else moduli * RATE * DT
-            self.assertAlmostEqual(anew["P_k/d"][k], p, delta=stress_change)
-            self.assertAlmostEqual(anew["mu"][k], mu, delta=stress_change / p)
+            self.assertAlmostEqual(again["P_k/d"][k], p, delta=stress_change)
+            self.assertAlmostEqual(again["mu"][k], mu, delta=stress_change / p)
             compared += 1
         self.assertGreater(compared, 6)
-        np.testing.assert_allclose(anew["P_run_k/d"], run.measure("stress")["P_k/d"], rtol=1e-12, atol=1e-14)
+        np.testing.assert_allclose(again["P_run_k/d"], run.measure("stress")["P_k/d"], rtol=1e-12, atol=1e-14)
         grains, stored = (
-            boba.open(self.folder / "run", self.folder / "anew").rows("grain_stress", anew["step"][-1]),
+            boba.open(self.folder / "run", self.folder / "again").rows("grain_stress", again["step"][-1]),
             None,
         )
-        stored = run.rows("grain_stress", anew["step"][-1])
+        stored = run.rows("grain_stress", again["step"][-1])
         for column in stored:
             np.testing.assert_allclose(grains[column], stored[column], atol=1e-8, err_msg=column)
 
