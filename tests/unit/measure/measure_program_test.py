@@ -94,11 +94,11 @@ class Program(unittest.TestCase):
         self.assertGreater(len(live.measure("stress")["step"]), 6)
         self.assertGreater(len(live.measure("packing_fraction")["step"]), 3)
 
-    def test_forces_evaluated_anew_give_the_stress_of_the_run(self):
+    def test_forces_evaluated_again_give_the_stress_of_the_run(self):
         run = boba.open(self.folder / "run")
-        done = boba_program(self.folder, "measure", "run", "--output", "again", "--what", "stress")
+        done = boba_program(self.folder, "measure", "run", "--output", "evaluated", "--what", "stress")
         self.assertEqual(done.returncode, 0, done.stderr)
-        again, table = boba.open(self.folder / "run", self.folder / "again").measure("stress"), run.table
+        again, table = boba.open(self.folder / "run", self.folder / "evaluated").measure("stress"), run.table
         stage = {step: k for k, step in enumerate(table["step"])}  # the last row of a step: where a stage began
         self.assertTrue((again["with_damping"] == 1).all())
         moduli = 2.0  # k/d, more than the bulk and shear moduli of this packing (a grain's E is 4)
@@ -117,7 +117,7 @@ class Program(unittest.TestCase):
         self.assertGreater(compared, 6)
         np.testing.assert_allclose(again["P_run_k/d"], run.measure("stress")["P_k/d"], rtol=1e-12, atol=1e-14)
         grains, stored = (
-            boba.open(self.folder / "run", self.folder / "again").rows("grain_stress", again["step"][-1]),
+            boba.open(self.folder / "run", self.folder / "evaluated").rows("grain_stress", again["step"][-1]),
             None,
         )
         stored = run.rows("grain_stress", again["step"][-1])
