@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/grain/template_spec.h"
+#include "bpm/grain/shapes/shape.h"
 
-#include <Eigen/Core>
+#include <memory>
 
 namespace boba {
 
-/// The ideal shape of a grain, centred on the origin; a cylinder's axis is z. Lengths in d.
+/// The ideal shape of a grain, centred on the origin; the axis of a cylinder or capsule is z. Lengths in d.
 class Outline {
 public:
   /// The shape of a valid specification, scaled as a whole by `scale`.
@@ -15,18 +15,17 @@ public:
   /// The same shape scaled to a volume (d^3).
   static Outline with_volume(const TemplateSpec& spec, double volume);
 
-  double volume() const;
-  Eigen::Vector3d half_lengths() const { return half_lengths_; }
+  double volume() const { return shape_->volume(); }
+  Eigen::Vector3d half_lengths() const { return shape_->half_lengths(); }
 
   /// The factor by which the outline must be scaled for its surface to pass through x; below 1 inside.
-  double reach(const Eigen::Vector3d& x) const;
+  double reach(const Eigen::Vector3d& x) const { return shape_->reach(x); }
 
   /// Force (k d) of a wall of stiffness k at the outline: -k times the distance beyond each face, along its normal.
-  Eigen::Vector3d wall_force(const Eigen::Vector3d& x) const;
+  Eigen::Vector3d wall_force(const Eigen::Vector3d& x) const { return shape_->wall_force(x); }
 
 private:
-  TemplateSpec::Shape shape_;
-  Eigen::Vector3d half_lengths_; // (R, R, R), (R, R, height / 2) or size / 2
+  std::shared_ptr<const SolidShape> shape_;
 };
 
 } // namespace boba

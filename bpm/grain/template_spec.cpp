@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/grain/template_spec.h"
 
-#include <array>
+#include "bpm/grain/shapes/shape.h"
+
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <stdexcept>
 
 namespace boba {
@@ -12,9 +15,6 @@ namespace {
 
 using Shape = TemplateSpec::Shape;
 using Surface = TemplateSpec::Surface;
-
-constexpr std::array shape_names{std::pair{Shape::sphere, "sphere"}, std::pair{Shape::cylinder, "cylinder"},
-                                 std::pair{Shape::box, "box"}, std::pair{Shape::periodic_box, "periodic_box"}};
 
 constexpr int smallest_grain = 20;
 constexpr int largest_grain = 20'000'000;
@@ -26,63 +26,28 @@ void require_between(const char* name, double value, double low, double high) {
   }
 }
 
-bool is_box(Shape shape) {
-  return shape == Shape::box || shape == Shape::periodic_box;
-}
-
-double volume(const TemplateSpec& spec) {
-  const double r = spec.radius;
-  switch (spec.shape) {
-  case Shape::sphere:
-    return 4.0 / 3.0 * M_PI * r * r * r;
-  case Shape::cylinder:
-    return M_PI * r * r * spec.height;
-  default:
-    return spec.size.prod();
-  }
-}
-
 constexpr double longest = 1e4; // d
 
 /// As given: lengths, or with a number of nodes proportions.
 void validate_size(const TemplateSpec& spec) {
-  if (is_box(spec.shape)) {
-    for (int a = 0; a < 3; ++a) {
-      require_between(fmt::format("size[{}]", a).c_str(), spec.size[a], spec.n_nodes ? 1e-3 : 2.0, longest);
-    }
-  } else if (spec.shape == Shape::cylinder) {
-    require_between("radius", spec.radius, spec.n_nodes ? 1e-3 : 1.5, longest);
-    require_between("height", spec.height, spec.n_nodes ? 1e-3 : 2.0, longest);
-  } else if (!spec.n_nodes) {
-    require_between("radius", spec.radius, 1.5, longest);
+  for (const BoundedLength& length : shape_kind(spec.shape).given(spec)) {
+    require_between(length.name.c_str(), length.value, length.lowest, longest);
   }
 }
 
 /// A sheet or a thread thinner than two nodes holds no network, however often it is tried.
 void validate_scaled_size(const TemplateSpec& spec) {
-  const double scale = std::cbrt(*spec.n_nodes / (spec.density * volume(spec)));
-  const auto require = [&](const std::string& name, double length) {
-    require_between(fmt::format("{} (scaled to {} nodes)", name, *spec.n_nodes).c_str(), scale * length, 2.0, longest);
-  };
-  if (is_box(spec.shape)) {
-    for (int a = 0; a < 3; ++a) {
-      require(fmt::format("size[{}]", a), spec.size[a]);
-    }
-  } else if (spec.shape == Shape::cylinder) {
-    require("diameter", 2.0 * spec.radius);
-    require("height", spec.height);
+  const double scale = std::cbrt(*spec.n_nodes / (spec.density * nominal_volume(spec)));
+  for (const BoundedLength& width : shape_kind(spec.shape).widths(spec)) {
+    require_between(fmt::format("{} (scaled to {} nodes)", width.name, *spec.n_nodes).c_str(), scale * width.value,
+                    width.lowest, longest);
   }
 }
 
 } // namespace
 
 std::string to_string(Shape shape) {
-  for (const auto& [value, name] : shape_names) {
-    if (value == shape) {
-      return name;
-    }
-  }
-  throw std::invalid_argument("grain template: unknown shape number");
+  return shape_kind(shape).name();
 }
 
 std::string to_string(Surface surface) {
@@ -90,13 +55,13 @@ std::string to_string(Surface surface) {
 }
 
 Shape shape_from_string(const std::string& word) {
-  for (const auto& [value, name] : shape_names) {
-    if (word == name) {
-      return value;
-    }
+  const std::vector<std::string> names = shape_names();
+  const auto at = std::find(names.begin(), names.end(), word);
+  if (at == names.end()) {
+    throw std::invalid_argument(
+        fmt::format("grain template: shape = \"{}\" is not one of {}", word, fmt::join(names, ", ")));
   }
-  throw std::invalid_argument(
-      fmt::format("grain template: shape = \"{}\" is not one of sphere, cylinder, box, periodic_box", word));
+  return static_cast<Shape>(at - names.begin());
 }
 
 Surface surface_from_string(const std::string& word) {
@@ -113,7 +78,12 @@ bool is_single_node(const TemplateSpec& spec) {
   return spec.shape == Shape::sphere && spec.n_nodes == 1;
 }
 
+double nominal_volume(const TemplateSpec& spec) {
+  return shape_kind(spec.shape).make(spec, 1.0)->volume();
+}
+
 void validate(const TemplateSpec& spec) {
+  shape_kind(spec.shape).check(spec);
   validate_size(spec);
   if (spec.shape == Shape::periodic_box && spec.surface == Surface::wall) {
     throw std::invalid_argument("grain template: surface = \"wall\" has no meaning for a periodic_box; leave it out");
@@ -127,7 +97,7 @@ void validate(const TemplateSpec& spec) {
     require_between("n_nodes", *spec.n_nodes, smallest_grain, largest_grain);
     validate_scaled_size(spec);
   } else {
-    require_between("number of nodes (from the size)", spec.density * volume(spec), smallest_grain, largest_grain);
+    require_between("number of nodes (from the size)", spec.density * nominal_volume(spec), smallest_grain, largest_grain);
   }
 }
 
@@ -140,15 +110,7 @@ std::string canonical_text(const TemplateSpec& spec) {
   if (spec.n_nodes) {
     text += fmt::format(" n_nodes={}", *spec.n_nodes);
   }
-  // With a number of nodes only the proportions count.
-  const double unit = !spec.n_nodes ? 1.0 : is_box(spec.shape) ? spec.size.x() : spec.radius;
-  if (is_box(spec.shape)) {
-    text += fmt::format(" size={},{},{}", spec.size.x() / unit, spec.size.y() / unit, spec.size.z() / unit);
-  } else if (spec.shape == Shape::cylinder) {
-    text += fmt::format(" radius={} height={}", spec.radius / unit, spec.height / unit);
-  } else if (!spec.n_nodes) {
-    text += fmt::format(" radius={}", spec.radius);
-  }
+  text += shape_kind(spec.shape).text(spec);
   return text + fmt::format(" density={} bond_cutoff={} seed={}", spec.density, spec.bond_cutoff, spec.seed);
 }
 

@@ -269,7 +269,7 @@ Eigen::Quaterniond random_rotation(Random& random) {
   return {large * std::cos(b), small * std::sin(a), small * std::cos(a), large * std::sin(b)};
 }
 
-Packing insert_at_random(const Insertion& insertion) {
+double insertion_edge(const Insertion& insertion) {
   if (insertion.grains.empty() || !(insertion.packing_fraction > 0.0)) {
     throw std::invalid_argument(fmt::format("insert: {} grains at packing_fraction = {}; both must be positive",
                                             insertion.grains.size(), insertion.packing_fraction));
@@ -280,6 +280,11 @@ Packing insert_at_random(const Insertion& insertion) {
         fmt::format("insert: packing_fraction = {:g} makes a cell of edge {:g} d; allowed: below {:g} d",
                     insertion.packing_fraction, edge, largest_edge));
   }
+  return edge;
+}
+
+Packing insert_at_random(const Insertion& insertion) {
+  const double edge = insertion_edge(insertion);
   std::vector<double> radii;
   for (const Grain& grain : insertion.grains) {
     radii.push_back(bounding_radius(*insertion.templates[grain.template_index], insertion.diameter));

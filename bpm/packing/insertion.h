@@ -29,6 +29,10 @@ double bounding_radius(const GrainTemplate& grain, double diameter);
 /// \throws std::runtime_error when the overlaps cannot be removed (too dense).
 std::vector<Vector3> place_spheres(const std::vector<double>& radii, double edge, Random& random);
 
+/// Edge of the cubic cell of an insertion, d.
+/// \throws std::invalid_argument without grains, without a packing fraction, or when the cell would be too large.
+double insertion_edge(const Insertion& insertion);
+
 /// Grains at rest at random places and angles in a cubic periodic cell, no two bounding spheres overlapping.
 /// \throws std::invalid_argument when the bounding spheres would fill more than a random arrangement can (0.60), with
 /// the packing fraction that is allowed; std::runtime_error when the overlaps cannot be removed.

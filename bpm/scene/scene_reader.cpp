@@ -5,6 +5,7 @@
 #include "bpm/parallel/usable_cores.h"
 #include "bpm/scene/override_text.h"
 #include "bpm/scene/scene.h"
+#include "bpm/scene/read_template.h"
 #include "bpm/scene/scene_schema.h"
 #include "bpm/scene/scene_size.h"
 #include "bpm/scene/scene_stages.h"
@@ -125,55 +126,10 @@ void read_measures(const SceneTables& tables, Scene& scene) {
   }
 }
 
-/// Keys that mean nothing for the template's shape are mistakes, not decoration.
-void check_shape_keys(const SceneTable& table, TemplateSpec::Shape shape) {
-  using Shape = TemplateSpec::Shape;
-  const auto only_for = [&](const std::string& key, bool allowed, const std::string& shapes) {
-    if (table.has(key) && !allowed) {
-      table.fail(key, "belongs to " + shapes + ", not to a " + to_string(shape));
-    }
-  };
-  const bool is_box = shape == Shape::box || shape == Shape::periodic_box;
-  only_for("radius", !is_box, "a sphere or a cylinder");
-  only_for("height", shape == Shape::cylinder, "a cylinder");
-  only_for("size", is_box, "a box or a periodic_box");
-  only_for("surface", shape != Shape::periodic_box, "a grain with a surface");
-  if (shape == Shape::sphere && table.has("radius") && table.has("nodes")) {
-    table.fail("nodes", "is given together with radius; a sphere takes one of them");
-  }
-}
-
-SceneTemplate read_template(const SceneTable& table) {
-  SceneTemplate result;
-  result.name = table.text("name", "");
-  TemplateSpec& spec = result.spec;
-  spec.shape = shape_from_string(table.text("shape", "sphere"));
-  check_shape_keys(table, spec.shape);
-  spec.surface = surface_from_string(table.text("surface", "cut"));
-  spec.radius = table.real("radius", spec.radius);
-  spec.height = table.real("height", spec.height);
-  const std::vector<double> size = table.vector("size", {20.0, 20.0, 20.0});
-  spec.size = {size[0], size[1], size[2]};
-  if (const auto nodes = table.maybe_integer("nodes")) {
-    spec.n_nodes = static_cast<int>(*nodes);
-  }
-  spec.seed = static_cast<std::uint64_t>(table.integer("seed", 1));
-  try {
-    validate(spec);
-  } catch (const std::invalid_argument& error) {
-    const char* key = table.has("nodes")    ? "nodes"
-                      : table.has("radius") ? "radius"
-                      : table.has("size")   ? "size"
-                                            : "name";
-    table.fail(key, fmt::format("the template cannot be made: {}", error.what()));
-  }
-  return result;
-}
-
-void read_templates(const SceneTables& tables, Scene& scene) {
+void read_templates(const SceneTables& tables, Scene& scene, bool must_exist) {
   std::set<std::string> names;
   for (const SceneTable& table : tables.list("template")) {
-    scene.templates.push_back(read_template(table));
+    scene.templates.push_back(read_template(table, {scene.path.parent_path(), must_exist}));
     const std::string& name = scene.templates.back().name;
     if (name.empty() || !names.insert(name).second) {
       table.fail("name", "must be a text that no other template has");
@@ -336,7 +292,7 @@ Scene read_tree(const std::string& text, const std::filesystem::path& path, cons
     scene.material.contact_diameter = *diameter; // absent where the scene says nothing: one law for all contacts
   }
   read_contact_law(material, scene.material);
-  read_templates(tables, scene);
+  read_templates(tables, scene, must_exist);
   read_measures(tables, scene);
   check_contact_law(tables, scene);
   read_species(tables, scene);

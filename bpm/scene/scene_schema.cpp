@@ -3,6 +3,8 @@
 #include "bpm/scene/scene_schema.h"
 
 #include "bpm/forces/contact_laws.h"
+#include "bpm/grain/shapes/convex_polyhedron.h"
+#include "bpm/grain/shapes/shape.h"
 #include "bpm/stages/stage_registry.h"
 #include "bpm/stages/start_registry.h"
 
@@ -129,11 +131,27 @@ std::vector<SceneSection> material_sections() {
       repeated("template",
                "An undeformed grain. Built once, then read from the cache (`~/.cache/boba`, or BOBA_CACHE_DIR).",
                {required(text_key("name", "", "what [[species]] calls it")),
-                choice_key("shape", {"sphere", "cylinder", "box", "periodic_box"}, "\"sphere\"", "its shape"),
+                choice_key("shape", shape_names(), "\"sphere\"", "its shape"),
                 above_key("radius", "d", 0.5, 500.0, "10",
-                          "of a sphere or cylinder; a grain has 20 nodes at least, which is a sphere's radius of 1.58"),
-                above_key("height", "d", 1.0, 2000.0, "40", "of a cylinder (along z)"),
-                vector_key("size", "d", 1.0, 2000.0, "[20, 20, 20]", "edges of a box"),
+                          "of a sphere, cylinder or capsule, or of the sphere through the corners of a polyhedron; a "
+                          "grain has 20 nodes at least, which is a sphere's radius of 1.58"),
+                above_key("height", "d", 1.0, 2000.0, "40",
+                          "of a cylinder (along z), or of a capsule with both half spheres"),
+                vector_key("size", "d", 1.0, 2000.0, "[20, 20, 20]",
+                           "edges of a box, or diameters of an ellipsoid or superellipsoid"),
+                real_key("exponent", "", 1.0, 50.0, "4",
+                         "e of a superellipsoid (|x/a|^e + |y/b|^e)^(f/e) + |z/c|^f = 1: 2 is round, 1 an octahedron, "
+                         "large a box"),
+                real_key("exponent_z", "", 1.0, 50.0, "that of exponent", "f of a superellipsoid"),
+                choice_key("polyhedron", polyhedron_names(), "\"cube\"", "which polyhedron"),
+                vectors_key("vertices", "d", -1e4, 1e4, 4, ConvexPolyhedron::most_vertices,
+                            "corners of a convex polyhedron, in place of its name and radius"),
+                real_key("rounding", "", 0.0, 0.9, "0",
+                         "radius of a polyhedron's rounded edges over that of the sphere inside"),
+                text_key("file", "",
+                         "of a mesh: a closed surface of triangles in STL, OFF, PLY or OBJ, normals outwards, told by "
+                         "the name's ending"),
+                above_key("scale", "d", 0.0, 1e6, "1", "unit of the mesh's coordinates"),
                 integer_key("nodes", 1.0, 2e7, "",
                             "scale the shape so that it holds this many nodes: 20 and more, or 1, a rigid sphere of "
                             "diameter d"),

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <limits>
-#include <numbers>
 #include <string>
 
 namespace boba {
@@ -23,16 +22,10 @@ double expected_nodes(const TemplateSpec& spec) {
   if (spec.n_nodes) {
     return *spec.n_nodes;
   }
-  switch (spec.shape) {
-  case TemplateSpec::Shape::sphere:
-    return spec.density * 4.0 / 3.0 * std::numbers::pi * spec.radius * spec.radius * spec.radius;
-  case TemplateSpec::Shape::cylinder:
-    return spec.density * std::numbers::pi * spec.radius * spec.radius * spec.height;
-  case TemplateSpec::Shape::box:
-  case TemplateSpec::Shape::periodic_box:
-    return spec.density * spec.size.prod();
+  if (spec.shape == TemplateSpec::Shape::mesh && spec.mesh == nullptr) {
+    return std::numeric_limits<double>::quiet_NaN();
   }
-  return 0.0;
+  return spec.density * nominal_volume(spec);
 }
 
 SceneSize expected_size(const Scene& scene) {

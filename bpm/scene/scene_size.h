@@ -20,7 +20,8 @@ struct SceneSize {
   double bytes = 0.0;          ///< needed at most, building included
 };
 
-/// Nodes a template will have, about, before it is built.
+/// Nodes a template will have, about, before it is built; NaN for a mesh whose file is gone, which only a run that
+/// continues has.
 double expected_nodes(const TemplateSpec& spec);
 
 /// For scenes that place their own grains, on one rank; zero for a start from files.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/stages/insert.h"
 
+#include "bpm/packing/node_insertion.h"
 #include "bpm/toml/schema.h"
 
 #include <fmt/format.h>
@@ -15,7 +16,8 @@ SceneSection InsertStart::section() {
       "insert",
       true,
       "Places all grains at random, without overlap and at random angles, in a cubic periodic cell, or on the "
-      "sites of a crystal. First stage only.",
+      "sites of a crystal. Grains that are far from spheres come as near to each other as their nodes allow. First "
+      "stage only.",
       {real_key("packing_fraction", "", 1e-9, 0.74, "0.4; at random, or the next lower in steps of 5 % that works",
                 "sum of the grains' reference volumes over the cell's volume"),
        choice_key("arrangement", arrangement_names(), "\"random\"",
@@ -49,16 +51,30 @@ void InsertStart::check(const SceneTable& table, const SceneGrains& grains) cons
 
 namespace {
 
+/// Grains that are far from spheres are placed by their nodes where their bounding spheres find no room.
+Packing insert_by_shape(const Insertion& insertion) {
+  try {
+    return insert_at_random(insertion);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {
+    if (are_round(insertion)) {
+      throw;
+    }
+  }
+  return insert_by_nodes(insertion);
+}
+
 /// Places the grains; `may_lower` steps down by 5 % where random placement does not reach the fraction (the spheres
 /// around cut grains are larger than what they enclose).
 Packing insert_where_possible(Insertion insertion, bool may_lower, const Narrator& narrate) {
   constexpr double step = 0.95, lowest = 0.1;
   while (true) {
     try {
-      return insert_at_random(insertion);
+      return insert_by_shape(insertion);
     } catch (const std::bad_alloc&) {
       throw;
-    } catch (const std::exception&) { // the spheres fill too much, or do not come to rest
+    } catch (const std::exception&) { // the spheres fill too much, or do not come to rest; not all grains find a place
       if (!may_lower || insertion.packing_fraction < lowest) {
         throw;
       }

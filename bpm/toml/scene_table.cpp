@@ -37,6 +37,14 @@ std::optional<SceneValue> checked_choice(const SceneKey& key, const TomlNode& no
   return known ? std::optional<SceneValue>(node.text) : std::nullopt;
 }
 
+std::optional<std::vector<double>> three_numbers(const SceneKey& key, const TomlNode& node) {
+  const auto good = [&key](const TomlNode& item) { return is_number(item) && in_range(key, number(item)); };
+  if (node.kind != Kind::array || node.items.size() != 3 || !std::all_of(node.items.begin(), node.items.end(), good)) {
+    return std::nullopt;
+  }
+  return std::vector<double>{number(node.items[0]), number(node.items[1]), number(node.items[2])};
+}
+
 /// The value if the key allows it.
 std::optional<SceneValue> checked(const SceneKey& key, const TomlNode& node) {
   using Type = SceneKey::Type;
@@ -53,13 +61,21 @@ std::optional<SceneValue> checked(const SceneKey& key, const TomlNode& node) {
     return node.kind == Kind::text ? std::optional<SceneValue>(node.text) : std::nullopt;
   case Type::choice:
     return checked_choice(key, node);
-  case Type::vector3: {
-    const auto good = [&key](const TomlNode& item) { return is_number(item) && in_range(key, number(item)); };
-    if (node.kind != Kind::array || node.items.size() != 3 ||
-        !std::all_of(node.items.begin(), node.items.end(), good)) {
+  case Type::vector3:
+    return three_numbers(key, node);
+  case Type::vectors: {
+    if (node.kind != Kind::array || node.items.size() < key.fewest || node.items.size() > key.most) {
       return std::nullopt;
     }
-    return std::vector<double>{number(node.items[0]), number(node.items[1]), number(node.items[2])};
+    std::vector<double> all;
+    for (const TomlNode& item : node.items) {
+      const std::optional<std::vector<double>> row = three_numbers(key, item);
+      if (!row) {
+        return std::nullopt;
+      }
+      all.insert(all.end(), row->begin(), row->end());
+    }
+    return all;
   }
   }
   return std::nullopt;

@@ -51,6 +51,8 @@ std::string SceneKey::allowed() const {
     return fmt::format("one of \"{}\"", fmt::join(choices, "\", \""));
   case Type::vector3:
     return "three numbers in brackets, each" + range_text(*this);
+  case Type::vectors:
+    return fmt::format("a list of {} to {} points [x, y, z], each number", fewest, most) + range_text(*this);
   }
   return "";
 }
@@ -96,6 +98,15 @@ SceneKey vector_key(std::string name, std::string unit, double lowest, double hi
                     std::string doc) {
   SceneKey key = above_key(std::move(name), std::move(unit), lowest, highest, std::move(fallback), std::move(doc));
   key.type = SceneKey::Type::vector3;
+  return key;
+}
+
+SceneKey vectors_key(std::string name, std::string unit, double lowest, double highest, std::size_t fewest,
+                     std::size_t most, std::string doc) {
+  SceneKey key = real_key(std::move(name), std::move(unit), lowest, highest, "", std::move(doc));
+  key.type = SceneKey::Type::vectors;
+  key.fewest = fewest;
+  key.most = most;
   return key;
 }
 

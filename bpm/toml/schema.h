@@ -15,7 +15,7 @@ using SceneValue = std::variant<bool, std::int64_t, double, std::string, std::ve
 
 /// What a key of a scene may hold.
 struct SceneKey {
-  enum class Type { boolean, integer, real, text, choice, vector3 };
+  enum class Type { boolean, integer, real, text, choice, vector3, vectors };
 
   std::string name;
   Type type = Type::real;
@@ -26,6 +26,7 @@ struct SceneKey {
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
   bool above_lowest = false;        ///< the lowest value itself is not allowed
+  std::size_t fewest = 0, most = 0; ///< of the entries of a list
   std::vector<std::string> choices; ///< of a choice; of a number: texts that may stand in its place
 
   /// "a number above 0 and at most 1 (tau)": the end of every message about this key.
@@ -44,6 +45,9 @@ SceneKey text_key(std::string name, std::string fallback, std::string doc);
 SceneKey choice_key(std::string name, std::vector<std::string> choices, std::string fallback, std::string doc);
 SceneKey vector_key(std::string name, std::string unit, double lowest, double highest, std::string fallback,
                     std::string doc);
+/// A list of as many vectors of three numbers as `fewest` to `most`; read as one vector with all numbers in a row.
+SceneKey vectors_key(std::string name, std::string unit, double lowest, double highest, std::size_t fewest,
+                     std::size_t most, std::string doc);
 SceneKey required(SceneKey key);
 /// The keys of both, in order.
 std::vector<SceneKey> joined(std::vector<SceneKey> first, const std::vector<SceneKey>& second);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "bpm/grain/shapes/convex_polyhedron.h"
+#include "bpm/grain/shapes/shape.h"
 #include "bpm/grain/template_spec.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +50,16 @@ TEST(TemplateSpec, EveryMemberThatMattersIsInTheText) {
                                                {.shape = Shape::box},
                                                {.shape = Shape::periodic_box},
                                                {.shape = Shape::box, .size = {9, 8, 7}},
-                                               {.shape = Shape::box, .size = {9, 8, 7}, .n_nodes = 300}};
+                                               {.shape = Shape::box, .size = {9, 8, 7}, .n_nodes = 300},
+                                               {.shape = Shape::ellipsoid},
+                                               {.shape = Shape::superellipsoid},
+                                               {.shape = Shape::superellipsoid, .exponent = 5.0},
+                                               {.shape = Shape::superellipsoid, .exponent_z = 5.0},
+                                               {.shape = Shape::capsule},
+                                               {.shape = Shape::polyhedron},
+                                               {.shape = Shape::polyhedron, .polyhedron = "octahedron"},
+                                               {.shape = Shape::polyhedron, .rounding = 0.1},
+                                               {.shape = Shape::polyhedron, .vertices = named_vertices("cube")}};
   for (const TemplateSpec& spec : different) {
     EXPECT_TRUE(texts.insert(canonical_text(spec)).second) << canonical_text(spec);
   }
@@ -68,9 +79,11 @@ TEST(TemplateSpec, HashIsThePublishedOne) {
 }
 
 TEST(TemplateSpec, WordsGoBothWays) {
-  for (const Shape shape : {Shape::sphere, Shape::cylinder, Shape::box, Shape::periodic_box}) {
+  for (const Shape shape : {Shape::sphere, Shape::cylinder, Shape::box, Shape::periodic_box, Shape::ellipsoid,
+                            Shape::superellipsoid, Shape::capsule, Shape::polyhedron, Shape::mesh}) {
     EXPECT_EQ(shape_from_string(to_string(shape)), shape);
   }
+  EXPECT_EQ(shape_names().size(), 9u);
   EXPECT_EQ(surface_from_string("wall"), Surface::wall);
   EXPECT_THROW(shape_from_string("ball"), std::invalid_argument);
   EXPECT_THROW(surface_from_string(""), std::invalid_argument);

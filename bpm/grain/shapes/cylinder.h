@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "bpm/grain/shapes/shape.h"
+
+namespace boba {
+
+/// `radius` and `height`, axis along z.
+class CylinderKind final : public ShapeKind {
+public:
+  std::string name() const override { return "cylinder"; }
+  std::vector<std::string> keys() const override { return {"radius", "height"}; }
+  std::unique_ptr<const SolidShape> make(const TemplateSpec& spec, double scale) const override;
+  std::vector<BoundedLength> given(const TemplateSpec& spec) const override;
+  std::vector<BoundedLength> widths(const TemplateSpec& spec) const override;
+  std::string text(const TemplateSpec& spec) const override;
+};
+
+} // namespace boba
