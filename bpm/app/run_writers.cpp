@@ -65,6 +65,7 @@ TrajectoryWriter trajectory_writer(const RunSetup& setup, const Simulation& simu
   options.velocity = output.velocities;
   options.nodes_by_others = nodes_by_others;
   options.damage = bonds_break(simulation.packing());
+  options.bonds_yield = bonds_yield(simulation.packing());
   const FileMode mode = setup.restart ? FileMode::overwrite : FileMode::create;
   return {path, topology, origin, options, mode};
 }
@@ -166,7 +167,8 @@ RunWriters open_writers(const RunSetup& setup, const Simulation& simulation, con
   };
   const bool with_stress =
       std::ranges::any_of(setup.scene.stages, [](const SceneStage& stage) { return stage.entry->shows_stress(); });
-  const std::vector<std::string> columns = run_table_columns({bonds_break(simulation.packing()), with_stress});
+  const std::vector<std::string> columns =
+      run_table_columns({bonds_break(simulation.packing()), bonds_yield(simulation.packing()), with_stress});
   const bool writes = simulation.ranks().is_root();
   std::optional<TableWriter> table;
   if (writes) {

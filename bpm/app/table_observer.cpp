@@ -35,6 +35,9 @@ std::vector<std::string> run_table_columns(const TableParts& parts) {
   if (parts.broken_bonds) {
     columns.insert(columns.end() - 1, "broken_bonds");
   }
+  if (parts.plastic_strain) {
+    columns.insert(columns.end() - 1, "plastic_strain");
+  }
   if (parts.stress) {
     for (const char* component : cell_components) {
       columns.push_back(std::string("stress_") + component + "_k/d");
@@ -91,6 +94,9 @@ void TableObserver::observe(const Simulation& simulation, const StageProgress& p
                                                has_ends ? std::optional(0.5 * (lower + upper)) : std::nullopt};
   if (totals.n_broken_bonds) {
     values.push_back(static_cast<double>(*totals.n_broken_bonds));
+  }
+  if (totals.plastic_strain) {
+    values.push_back(*totals.plastic_strain);
   }
   values.push_back(steps_per_second(simulation.step()));
   if (with_stress_) {

@@ -16,8 +16,9 @@ namespace boba {
 
 /// Columns of table.csv that only some scenes have.
 struct TableParts {
-  bool broken_bonds = false; ///< how many bonds are broken
-  bool stress = false;       ///< all components of the stress
+  bool broken_bonds = false;   ///< how many bonds are broken
+  bool plastic_strain = false; ///< mean plastic strain of the bonds that may yield
+  bool stress = false;         ///< all components of the stress
 };
 
 /// Columns of table.csv, in order; each name carries its unit.

@@ -50,6 +50,7 @@ void Totals::archive(Archive& archive) {
   archive.field("elastic_energy", elastic_energy);
   archive.field("largest_overlap", largest_overlap);
   archive.field("n_broken_bonds", n_broken_bonds);
+  archive.field("plastic_strain", plastic_strain);
 }
 
 struct Simulation::Impl {

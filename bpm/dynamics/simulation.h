@@ -43,6 +43,7 @@ struct Totals {
   double largest_overlap = 0.0;   ///< d, over all contacts
   double least_pressure = 1e-12;  ///< k/d; a pressure below it cannot be told from rounding
   std::optional<std::int64_t> n_broken_bonds; ///< absent where bonds do not break
+  std::optional<double> plastic_strain;       ///< mean of the bonds that may yield; absent where none does
   /// Shear stress over pressure; not a number where the pressure cannot be told from rounding.
   double mu() const {
     return std::abs(pressure) > least_pressure ? stress[3] / pressure : std::numeric_limits<double>::quiet_NaN();

@@ -35,6 +35,9 @@ Totals totals_of(const MovingPacking& moving) {
   if (moving.forces.bonds().can_break()) {
     totals.n_broken_bonds = moving.forces.survey(moving.state).n_broken();
   }
+  if (moving.forces.bonds().can_yield()) {
+    totals.plastic_strain = moving.forces.survey(moving.state).plastic_strain();
+  }
   return totals;
 }
 

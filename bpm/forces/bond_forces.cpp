@@ -54,8 +54,9 @@ BondForces::BondForces(const Packing& packing, const LaneLayout& layout, const M
     network_of_grain_.push_back(&networks_[grain.template_index]);
   }
   can_break_ = bonds_break(packing);
-  if (has_periodic_template_ && can_break_) {
-    throw std::invalid_argument("break_strain: bonds do not break in networks that are bonded across the cell's "
+  can_yield_ = bonds_yield(packing);
+  if (has_periodic_template_ && layout.memory_slots() > 0) {
+    throw std::invalid_argument("break_strain and yield_strain are not for networks that are bonded across the cell's "
                                 "boundary (periodic_box)");
   }
   if (has_periodic_template_ && layout.precision() == Precision::mixed) {
@@ -120,7 +121,7 @@ void BondForces::evaluate_block(int b, LaneArrays<Coordinate, Real>& lanes, cons
   if (block.many_body && volume.size() < n_lane_nodes) {
     volume.resize(n_lane_nodes, 0);
   }
-  if (block.many_body && block.breaking.is_possible() && rest_volume.size() < n_lane_nodes) {
+  if (block.many_body && block.n_remembered > 0 && rest_volume.size() < n_lane_nodes) {
     rest_volume.resize(n_lane_nodes, 0);
   }
   if (force.size() < 3 * n_lane_nodes) {
@@ -217,7 +218,7 @@ void BondForces::volumes_only(LaneState& state) const {
     using Arrays = std::remove_reference_t<decltype(lanes)>;
     AlignedArray<typename Arrays::Real> volume;
     for (const Block& block : layout_.blocks()) {
-      if (block.many_body && !block.breaking.is_possible()) {
+      if (block.many_body && block.n_remembered == 0) {
         volume.assign(static_cast<std::size_t>(block.n_nodes) * block.n_lanes, 0);
         kernels_of(table_, lanes)
             .volumes(networks_[block.template_index].view_as<typename Arrays::Real>(),

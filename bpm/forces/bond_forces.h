@@ -44,6 +44,7 @@ public:
   const std::vector<const NetworkData*>& network_of_grain() const { return network_of_grain_; }
   bool has_periodic_template() const { return has_periodic_template_; }
   bool can_break() const { return can_break_; } ///< of some grain of the packing, on any rank
+  bool can_yield() const { return can_yield_; } ///< the same
   /// The layout or the state changed, with what its bonds remember.
   void bonds_changed() { broken_are_known_ = false; }
   /// Tells the contact list of the bonds that broke since the last call: their nodes touch from now on. Collective.
@@ -75,7 +76,7 @@ private:
   std::vector<NetworkData> networks_; ///< per template
   std::vector<const NetworkData*> network_of_grain_;
   bool has_periodic_template_ = false;
-  bool can_break_ = false;
+  bool can_break_ = false, can_yield_ = false;
   bool broken_are_known_ = false;    ///< to the contact list
   std::vector<char> has_new_broken_; ///< per block, in the last evaluation
 };

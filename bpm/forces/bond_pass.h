@@ -21,6 +21,7 @@ template <class Coordinate, class Real> struct BondPass {
   std::array<double, max_lanes> residual_shift{};
   kernels::BondParameters parameters;
   kernels::BondParametersOf<BreakingBondLaw> breaking{}; ///< the same for blocks whose bonds break
+  kernels::BondParametersOf<YieldingBondLaw> yielding{}; ///< and for those whose bonds yield
   std::vector<kernels::LaneSums> sums;                   ///< of each segment
 
   using Kernels = kernels::LaneKernels<Coordinate, Real>;
@@ -34,6 +35,18 @@ template <class Coordinate, class Real> struct BondPass {
   /// With these arrays, which are those of the pass but for what a piece has of its own.
   void bonds(const Kernels& kernels, const kernels::BlockArraysOf<Coordinate, Real>& with, Virial virial,
              const kernels::NodeRange& range, std::int64_t& volumes_done, kernels::LaneSums& sums_of_range) const;
+
+private:
+  /// Calls visit(kernels, parameters) with those of the block's law.
+  template <class Visit> void with_law(const Kernels& kernels, Visit&& visit) const {
+    if (block->yielding.is_possible()) {
+      visit(kernels.yielding, yielding);
+    } else if (block->breaking.is_possible()) {
+      visit(kernels.breaking, breaking);
+    } else {
+      visit(kernels, parameters);
+    }
+  }
 };
 
 template <class Coordinate, class Real>
@@ -55,13 +68,15 @@ BondPass<Coordinate, Real>::BondPass(const Block& of_block, const NetworkData& o
                 what.half_kick / material.node_mass,
                 material.node_mass,
                 {residual[0], residual[1], residual[2]}};
-  if (block->breaking.is_possible()) {
+  if (block->n_remembered > 0) {
     const kernels::BondParameters& p = parameters;
-    breaking = {{p.law, block->breaking.in_tension_only, block->breaking.smooth},
-                p.kick,
-                p.half_kick,
-                p.mass,
-                {p.residual[0], p.residual[1], p.residual[2]}};
+    const auto with = [&]<class Law>(const Law& law) {
+      return kernels::BondParametersOf<Law>{
+          law, p.kick, p.half_kick, p.mass, {p.residual[0], p.residual[1], p.residual[2]}};
+    };
+    const BreakingBondLaw breaking_law = {p.law, block->breaking.in_tension_only, block->breaking.smooth};
+    breaking = with(breaking_law);
+    yielding = with(YieldingBondLaw{breaking_law, block->yielding.strain, block->yielding.hardening});
     arrays.memory = lanes.memory.data() + block->memory;
     arrays.keeps_memory = !what.is_trial;
   }
@@ -74,30 +89,25 @@ BondPass<Coordinate, Real>::BondPass(const Block& of_block, const NetworkData& o
 
 template <class Coordinate, class Real>
 void BondPass<Coordinate, Real>::volumes(const Kernels& kernels, const kernels::NodeRange& range) const {
-  (block->breaking.is_possible() ? kernels.breaking.volumes : kernels.volumes)(network->template view_as<Real>(),
-                                                                               arrays, range);
+  with_law(kernels,
+           [&](const auto& of_law, const auto&) { of_law.volumes(network->template view_as<Real>(), arrays, range); });
 }
 
 template <class Coordinate, class Real>
 void BondPass<Coordinate, Real>::bonds_from_before(const Kernels& kernels, const kernels::NodeRange& range) const {
-  const auto view = network->template view_as<Real>();
-  if (block->breaking.is_possible()) {
-    kernels.breaking.bonds_from_before(view, arrays, breaking, block->many_body, range);
-  } else {
-    kernels.bonds_from_before(view, arrays, parameters, block->many_body, range);
-  }
+  with_law(kernels, [&](const auto& of_law, const auto& p) {
+    of_law.bonds_from_before(network->template view_as<Real>(), arrays, p, block->many_body, range);
+  });
 }
 
 template <class Coordinate, class Real>
 void BondPass<Coordinate, Real>::bonds(const Kernels& kernels, const kernels::BlockArraysOf<Coordinate, Real>& with,
                                        Virial virial, const kernels::NodeRange& range, std::int64_t& volumes_done,
                                        kernels::LaneSums& sums_of_range) const {
-  const auto view = network->template view_as<Real>();
-  if (block->breaking.is_possible()) {
-    kernels.breaking.bonds(view, with, breaking, block->many_body, virial, range, volumes_done, sums_of_range);
-  } else {
-    kernels.bonds(view, with, parameters, block->many_body, virial, range, volumes_done, sums_of_range);
-  }
+  with_law(kernels, [&](const auto& of_law, const auto& p) {
+    of_law.bonds(network->template view_as<Real>(), with, p, block->many_body, virial, range, volumes_done,
+                 sums_of_range);
+  });
 }
 
 } // namespace boba

@@ -8,10 +8,14 @@ namespace boba {
 
 namespace {
 
+bool is_whole(const LaneLayout& layout, const LaneState& state, int grain, std::int64_t bond) {
+  return !layout.remembers(grain) || state.bond_memory(grain, bond, 0) > 0.0;
+}
+
 struct SurveyedBond {
-  int node;            ///< the first
-  double r, r0;        ///< d
-  double memory = 1.0; ///< what it remembers; never negative where bonds do not break
+  int node;               ///< the first
+  double r, r0;           ///< d
+  std::int64_t bond = -1; ///< its number in the template; -1: across the boundary
 };
 
 /// Calls visit(bond) for every whole bond of a grain, those across the boundary included.
@@ -22,10 +26,8 @@ void for_each_bond(const NetworkData& data, const LaneLayout& layout, const Lane
   for (int i = 0; i < network.n_nodes; ++i) {
     const Vector3 xi = state.position(grain, i);
     for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
-      const double memory = layout.remembers(grain) ? state.bond_memory(grain, b) : 1.0;
-      if (BreakingBondLaw::if_whole(1.0, memory) > 0.0) {
-        visit(
-            SurveyedBond{i, (xi - state.position(grain, network.bonds[b].other)).norm(), network.bonds[b].r0, memory});
+      if (is_whole(layout, state, grain, b)) {
+        visit(SurveyedBond{i, (xi - state.position(grain, network.bonds[b].other)).norm(), network.bonds[b].r0, b});
       }
     }
   }
@@ -60,7 +62,7 @@ std::vector<kernels::NodePair> broken_bonds(const NetworkData& data, const LaneL
   std::vector<kernels::NodePair> broken;
   for (int i = 0; layout.remembers(grain) && i < network.n_nodes; ++i) {
     for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
-      if (!(BreakingBondLaw::if_whole(1.0, state.bond_memory(grain, b)) > 0.0)) {
+      if (!is_whole(layout, state, grain, b)) {
         broken.push_back({i, network.bonds[b].other});
       }
     }
@@ -72,11 +74,18 @@ double BondSurvey::energy(const Box& box) const {
   std::vector<double> energy(layout_.n_grains(), 0.0);
 #pragma omp parallel for schedule(dynamic, 8)
   for (const int g : layout_.grains()) {
-    const Breaking& breaking = layout_.blocks()[layout_.block_of(g)].breaking;
-    const BreakingBondLaw breaking_law{law_, breaking.in_tension_only, breaking.smooth};
+    const Block& block = layout_.blocks()[layout_.block_of(g)];
+    const BreakingBondLaw breaking{law_, block.breaking.in_tension_only, block.breaking.smooth};
+    const YieldingBondLaw yielding{breaking, block.yielding.strain, block.yielding.hardening};
     for_each_bond(*network_of_grain_[g], layout_, state_, box, g, [&](const SurveyedBond& bond) {
-      energy[g] +=
-          breaking.is_possible() ? breaking_law.energy(bond.r, bond.r0, bond.memory) : law_.energy(bond.r, bond.r0);
+      double memory[YieldingBondLaw::n_remembered] = {};
+      for (int k = 0; k < layout_.n_remembered(g); ++k) {
+        memory[k] = state_.bond_memory(g, bond.bond, k);
+      }
+      const double limit[] = {memory[0]};
+      energy[g] += block.yielding.is_possible()   ? yielding.energy(bond.r, bond.r0, memory)
+                   : block.breaking.is_possible() ? breaking.energy(bond.r, bond.r0, limit)
+                                                  : law_.energy(bond.r, bond.r0);
     });
   }
   distribution_.ranks->share_rows(energy, 1, distribution_.ownership);
@@ -115,6 +124,26 @@ std::int64_t BondSurvey::n_broken() const {
     n += static_cast<std::int64_t>(broken_bonds(*network_of_grain_[g], layout_, state_, g).size());
   }
   return distribution_.ranks->sum(n);
+}
+
+double BondSurvey::plastic_strain() const {
+  std::vector<double> sums(2 * static_cast<std::size_t>(layout_.n_grains()), 0.0); // of p, and bonds, per grain
+  for (const int g : layout_.grains()) {
+    if (layout_.n_remembered(g) == YieldingBondLaw::n_remembered) {
+      const std::int64_t n_bonds = layout_.first_bonds(g).back();
+      for (std::int64_t b = 0; b < n_bonds; ++b) {
+        sums[2 * g] += state_.bond_memory(g, b, 2);
+      }
+      sums[2 * g + 1] = static_cast<double>(n_bonds);
+    }
+  }
+  distribution_.ranks->share_rows(sums, 2, distribution_.ownership);
+  double plastic = 0.0, bonds = 0.0;
+  for (std::size_t row = 0; row < sums.size(); row += 2) {
+    plastic += sums[row];
+    bonds += sums[row + 1];
+  }
+  return bonds > 0.0 ? plastic / bonds : 0.0;
 }
 
 Stretch BondSurvey::largest_stretch(const Box& box) const {

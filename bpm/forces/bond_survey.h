@@ -40,6 +40,8 @@ public:
   std::vector<double> damage(int grain) const;
   /// Broken bonds of all grains. Collective.
   std::int64_t n_broken() const;
+  /// Mean plastic strain p (YieldingBondLaw) of the bonds that may yield, the broken ones included. Collective.
+  double plastic_strain() const;
   /// The whole bond with the largest r / r0, over the grains of this rank.
   Stretch largest_stretch(const Box& box) const;
 

@@ -33,7 +33,7 @@ public:
       const auto n_lane_nodes =
           static_cast<std::size_t>(passes_[k].block->n_nodes) * static_cast<std::size_t>(passes_[k].block->n_lanes);
       scratch[k].volume.resize(n_lane_nodes);
-      scratch[k].rest_volume.resize(passes_[k].block->breaking.is_possible() ? n_lane_nodes : 0);
+      scratch[k].rest_volume.resize(passes_[k].block->n_remembered > 0 ? n_lane_nodes : 0);
       scratch[k].force.resize(3 * n_lane_nodes);
       scratch[k].beyond.resize(n_pieces);
     }

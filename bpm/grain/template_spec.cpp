@@ -97,7 +97,8 @@ void validate(const TemplateSpec& spec) {
     require_between("n_nodes", *spec.n_nodes, smallest_grain, largest_grain);
     validate_scaled_size(spec);
   } else {
-    require_between("number of nodes (from the size)", spec.density * nominal_volume(spec), smallest_grain, largest_grain);
+    require_between("number of nodes (from the size)", spec.density * nominal_volume(spec), smallest_grain,
+                    largest_grain);
   }
 }
 

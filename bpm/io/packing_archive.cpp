@@ -129,6 +129,30 @@ void archive_breaking(Archive& archive, Packing& packing) {
   }
 }
 
+/// When the bonds of each grain yield; fields that are absent where none do.
+void archive_yielding(Archive& archive, Packing& packing) {
+  std::optional<std::vector<double>> strain, hardening;
+  if (bonds_yield(packing)) {
+    strain.emplace();
+    hardening.emplace();
+    for (const Grain& grain : packing.grains) {
+      strain->push_back(grain.yielding.strain);
+      hardening->push_back(grain.yielding.hardening);
+    }
+  }
+  archive.field("yield_strain", strain);
+  archive.field("yield_hardening", hardening);
+  if (archive.is_reading() && strain) {
+    require(strain->size() == packing.grains.size() && hardening && hardening->size() == strain->size() &&
+                are_finite(*strain) && are_finite(*hardening),
+            "when the bonds yield does not belong to the grains");
+    for (std::size_t g = 0; g < strain->size(); ++g) {
+      require((*strain)[g] >= 0.0 && (*hardening)[g] >= 0.0, "a grain's bonds yield below no strain at all");
+      packing.grains[g].yielding = {(*strain)[g], (*hardening)[g]};
+    }
+  }
+}
+
 void archive_grains(Archive& archive, Packing& packing) {
   std::vector<std::int64_t> templates, species, molecule;
   std::vector<double> alpha;
@@ -144,6 +168,7 @@ void archive_grains(Archive& archive, Packing& packing) {
   archive.field("alpha", alpha);
   if (!archive.is_reading()) {
     archive_breaking(archive, packing);
+    archive_yielding(archive, packing);
     return;
   }
   require(templates.size() == alpha.size() && species.size() == alpha.size() && molecule.size() == alpha.size() &&
@@ -156,6 +181,7 @@ void archive_grains(Archive& archive, Packing& packing) {
     packing.grains.push_back({static_cast<int>(templates[g]), static_cast<int>(species[g]), alpha[g], molecule[g]});
   }
   archive_breaking(archive, packing);
+  archive_yielding(archive, packing);
 }
 
 } // namespace

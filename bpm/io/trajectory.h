@@ -26,6 +26,7 @@ struct TrajectoryOptions {
   int compression = 0;          ///< 0 (none, fastest) .. 9 of the node data
   bool nodes_by_others = false; ///< nodes of frames are put into the file by several ranks, see allocate_frame
   bool damage = false;          ///< store the share of broken bonds of each node; every snapshot then needs it
+  bool bonds_yield = false;     ///< note that frames do not tell the state of bonds
 };
 
 /// Writes an H5MD 1.1 file frame by frame: positions and images, box, each grain's centre and stress, strain, and once
@@ -93,6 +94,8 @@ public:
   const Topology& topology() const { return topology_; }
   const TrajectoryOrigin& origin() const { return origin_; }
   bool has_velocity() const { return has_velocity_; }
+  /// True when bonds yield: frames do not tell how far.
+  bool bonds_yield() const { return bonds_yield_; }
 
   /// Frame 0 .. n_frames() - 1, or counted from the end: -1 is the last. Positions are unwrapped.
   /// \throws InputError for a frame that is not there.
@@ -110,7 +113,7 @@ private:
   std::vector<std::int64_t> steps_;
   Topology topology_;
   TrajectoryOrigin origin_;
-  bool has_velocity_ = false;
+  bool has_velocity_ = false, bonds_yield_ = false;
 };
 
 } // namespace boba

@@ -122,6 +122,9 @@ void make_elements(const File& file, const Topology& topology, const TrajectoryO
   if (options.velocity) {
     make_element(file, velocity, nodes, "d/tau");
   }
+  if (options.bonds_yield) {
+    file.set_attribute(std::string(grains) + "/alpha", trajectory::bonds_yield, std::string("yes"));
+  }
   if (options.damage) {
     make_element(file, damage, {{n}, 1, options.compression}, "1");
   }

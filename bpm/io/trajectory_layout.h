@@ -17,6 +17,7 @@ inline constexpr const char* position = "/particles/all/position";
 inline constexpr const char* image = "/particles/all/image";
 inline constexpr const char* velocity = "/particles/all/velocity";
 inline constexpr const char* damage = "/particles/all/boba_damage";
+inline constexpr const char* bonds_yield = "boba_bonds_yield"; ///< attribute of the grains' alpha
 inline constexpr const char* edges = "/particles/all/box/edges";
 inline constexpr const char* box_origin = "/particles/all/box/boba_origin";
 inline constexpr const char* strain = "/observables/strain";

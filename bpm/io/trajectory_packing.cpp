@@ -84,6 +84,12 @@ Packing read_trajectory_packing(const std::filesystem::path& file, int frame) {
                                  "continue from there needs its checkpoint",
                                  file.string(), state.step));
   }
+  if (reader.bonds_yield() && frame != 0) {
+    throw InputError(
+        fmt::format("{}: the bonds of its grains yield, and a trajectory does not say how far they have at "
+                    "step {}: a run that is to continue from there needs its checkpoint",
+                    file.string(), state.step));
+  }
   Packing packing;
   packing.box = state.box;
   Networks networks = networks_of(topology, reader.snapshot(0), file);

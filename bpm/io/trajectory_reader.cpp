@@ -92,6 +92,7 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : impl_(st
     check_growing(file, topology_);
     steps_ = complete_steps(file);
     has_velocity_ = file.has(velocity);
+    bonds_yield_ = file.has_attribute(std::string(grains) + "/alpha", trajectory::bonds_yield);
     impl_->periodic = read_boundary(file);
   });
 }

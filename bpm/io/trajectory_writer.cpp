@@ -82,11 +82,13 @@ void rebuild(const std::filesystem::path& path, std::int64_t last_step) {
   {
     const TrajectoryReader reader(path);
     const File from = File::open(path, false);
-    TrajectoryWriter writer(copy, reader.topology(), reader.origin(),
-                            {.velocity = reader.has_velocity(),
-                             .compression = from.compression(value_of(position)),
-                             .damage = from.has(damage)},
-                            FileMode::overwrite);
+    TrajectoryWriter writer(
+        copy, reader.topology(), reader.origin(),
+        {.velocity = reader.has_velocity(),
+         .compression = from.compression(value_of(position)),
+         .damage = from.has(damage),
+         .bonds_yield = from.has_attribute(std::string(grains) + "/alpha", trajectory::bonds_yield)},
+        FileMode::overwrite);
     writer.close();
     File to = File::open(copy, true);
     if (from.has_attribute(box, "boundary")) {

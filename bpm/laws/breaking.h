@@ -28,8 +28,8 @@ struct Breaking {
 /// these lines. A bond that breaks exerts no force from that evaluation on; V and V0 of its nodes lose it from the
 /// next.
 ///
-/// A bond remembers one number, e_c^2, which is negative once it is broken; laws with such a memory have
-/// `n_remembered`, and their functions take it by reference and bring it up to date.
+/// A bond remembers one number, e_c^2, which is negative once it is broken. Laws with such a memory have `n_remembered`
+/// numbers, of which this is the first; their functions take them by reference and bring them up to date.
 /// Source: LAMMPS, bond style bpm/spring (keywords break, smooth); docs/notation.md, "Breaking".
 template <class Scalar> struct BreakingBondLawOf {
   static constexpr int n_remembered = 1;
@@ -41,21 +41,22 @@ template <class Scalar> struct BreakingBondLawOf {
     return {bond.template in<Other>(), in_tension_only, smooth};
   }
 
-  /// The force of a bond that has remembered `limit2`, which is brought up to date; arguments as in BondLaw. 8 to 14
+  /// The force of a bond with this memory, which is brought up to date; other arguments as in BondLaw. 8 to 14
   /// operations more than there.
   template <class Real>
   BOBA_LAW_FUNCTION Real force(Real alpha, Real r, Scalar r0, Scalar inverse_r0, Real cbrt_ratio, Real normal_velocity,
-                               Real& limit2) const {
-    return held(bond.force(alpha, r, r0, inverse_r0, cbrt_ratio, normal_velocity), r, inverse_r0, limit2);
+                               Real (&memory)[n_remembered]) const {
+    return held(bond.force(alpha, r, r0, inverse_r0, cbrt_ratio, normal_velocity), r, inverse_r0, memory[0]);
   }
   template <class Real>
   BOBA_LAW_FUNCTION Real pairwise_force(Real r, Scalar r0, Scalar inverse_r0, Real normal_velocity,
-                                        Real& limit2) const {
-    return held(bond.pairwise_force(r, r0, inverse_r0, normal_velocity), r, inverse_r0, limit2);
+                                        Real (&memory)[n_remembered]) const {
+    return held(bond.pairwise_force(r, r0, inverse_r0, normal_velocity), r, inverse_r0, memory[0]);
   }
 
   /// The elastic energy of a bond at rest, k r0^2 (e^2 / 2 - e^10 / (10 e_c^8)) with smoothing; 0 when broken.
-  template <class Real> BOBA_LAW_FUNCTION Real energy(Real r, Scalar r0, Real limit2) const {
+  template <class Real> BOBA_LAW_FUNCTION Real energy(Real r, Scalar r0, const Real (&memory)[n_remembered]) const {
+    const Real limit2 = memory[0];
     const Real square = counted_square(r, Scalar(1) / r0), ratio = square / limit2;
     const Real faded = Scalar(0.1) * bond.k * r0 * r0 * square * ratio * ratio * ratio * ratio;
     const Real whole = bond.energy(r, r0);
@@ -63,8 +64,25 @@ template <class Scalar> struct BreakingBondLawOf {
   }
 
   /// x of a whole bond, 0 of a broken one.
-  template <class Real> BOBA_LAW_FUNCTION static Real if_whole(Real x, Real limit2) {
-    return limit2 > Real() ? x : Real();
+  template <class Real> BOBA_LAW_FUNCTION static Real if_whole(Real x, const Real (&memory)[n_remembered]) {
+    return memory[0] > Real() ? x : Real();
+  }
+  /// The length whose cube V0 counts.
+  template <class Real, class Number>
+  BOBA_LAW_FUNCTION static Real rest_length(Number r0, const Real (&)[n_remembered]) {
+    return Real() + r0;
+  }
+
+  /// The force of a bond that has remembered `limit2`, which is brought up to date, from what it would be without
+  /// breaking.
+  template <class Real> BOBA_LAW_FUNCTION Real held(Real f, Real r, Scalar inverse_r0, Real& limit2) const {
+    const Real square = counted_square(r, inverse_r0);
+    limit2 = square <= limit2 ? limit2 : Real() - Scalar(1);
+    if (smooth) {
+      const Real ratio = square / limit2, fourth = ratio * ratio;
+      f = f - f * (fourth * fourth);
+    }
+    return limit2 > Real() ? f : Real();
   }
 
 private:
@@ -73,15 +91,6 @@ private:
     const Real strain = r * inverse_r0 - Scalar(1);
     const Real counted = in_tension_only ? (strain > Real() ? strain : Real()) : strain;
     return counted * counted;
-  }
-  template <class Real> BOBA_LAW_FUNCTION Real held(Real f, Real r, Scalar inverse_r0, Real& limit2) const {
-    const Real square = counted_square(r, inverse_r0);
-    limit2 = square <= limit2 ? limit2 : Real() - Scalar(1);
-    if (smooth) {
-      const Real ratio = square / limit2, fourth = ratio * ratio;
-      f = f - f * (fourth * fourth);
-    }
-    return if_whole(f, limit2);
   }
 };
 using BreakingBondLaw = BreakingBondLawOf<double>;

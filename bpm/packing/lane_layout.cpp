@@ -30,14 +30,20 @@ int lanes_for(int grains_in_group, int block_lanes) {
 struct Group {
   int template_index;
   bool many_body, breaks, in_tension_only, smooth;
+  double yield_strain, hardening;
   auto operator<=>(const Group&) const = default;
 };
 
 Group group_of(const Grain& grain) {
   const Breaking& breaking = grain.breaking;
   const bool breaks = breaking.is_possible();
-  return {grain.template_index, grain.alpha != 0.0, breaks, breaks && breaking.in_tension_only,
-          breaks && breaking.smooth};
+  return {grain.template_index,
+          grain.alpha != 0.0,
+          breaks,
+          breaks && breaking.in_tension_only,
+          breaks && breaking.smooth,
+          grain.yielding.strain,
+          grain.yielding.hardening};
 }
 
 /// First bond of each node, and their number at last.
@@ -81,16 +87,20 @@ LaneLayout::LaneLayout(const Packing& packing, Precision precision, std::span<co
 }
 
 void LaneLayout::count_bonds(const Packing& packing) {
+  std::map<int, std::int64_t> most_bonds; // of any node of a template
   for (const Grain& grain : packing.grains) {
     const int t = grain.template_index;
-    if (!grain.breaking.is_possible() || first_bonds_.contains(t)) {
+    if (grain.n_remembered() == 0) {
       continue;
     }
-    const std::vector<std::int64_t>& first =
-        first_bonds_.emplace(t, first_bonds_of(*packing.templates[t])).first->second;
-    for (std::size_t i = 1; i < first.size(); ++i) {
-      memory_slots_ = std::max(memory_slots_, static_cast<int>(first[i] - first[i - 1]));
+    if (!first_bonds_.contains(t)) {
+      const std::vector<std::int64_t>& first =
+          first_bonds_.emplace(t, first_bonds_of(*packing.templates[t])).first->second;
+      for (std::size_t i = 1; i < first.size(); ++i) {
+        most_bonds[t] = std::max(most_bonds[t], first[i] - first[i - 1]);
+      }
     }
+    memory_slots_ = std::max(memory_slots_, grain.n_remembered() * static_cast<int>(most_bonds[t]));
   }
 }
 
@@ -104,6 +114,8 @@ void LaneLayout::add_block(const Packing& packing, const std::vector<int>& grain
   block.grain.assign(n_lanes, -1);
   block.alpha.assign(n_lanes, packing.grains[grains.front()].alpha);
   block.breaking = packing.grains[grains.front()].breaking;
+  block.yielding = packing.grains[grains.front()].yielding;
+  block.n_remembered = packing.grains[grains.front()].n_remembered();
   block.memory = memory_size_;
   for (int lane = 0; lane < static_cast<int>(grains.size()); ++lane) {
     const int g = grains[lane];
@@ -115,11 +127,12 @@ void LaneLayout::add_block(const Packing& packing, const std::vector<int>& grain
                  static_cast<int>(blocks_.size()),
                  lane,
                  block.template_index,
-                 block.breaking.is_possible() ? memory_size_ + lane : -1};
+                 block.n_remembered,
+                 block.n_remembered > 0 ? memory_size_ + lane : -1};
   }
-  if (block.breaking.is_possible()) {
+  if (block.n_remembered > 0) {
     const auto n_bonds = static_cast<std::int64_t>(packing.templates[block.template_index]->bonds.size());
-    memory_size_ += (n_bonds * n_lanes + 15) / 16 * 16;
+    memory_size_ += (n_bonds * block.n_remembered * n_lanes + 15) / 16 * 16;
   }
   const std::int64_t numbers = 3 * static_cast<std::int64_t>(block.n_nodes) * n_lanes;
   size_ += (numbers + 15) / 16 * 16; // every block starts on a cache line

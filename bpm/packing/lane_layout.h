@@ -34,6 +34,8 @@ struct Block {
   std::vector<int> grain;    ///< per lane; -1 marks an idle lane
   std::vector<double> alpha; ///< per lane, k d
   Breaking breaking;         ///< of its bonds, but for the strains, which each bond of each lane remembers
+  Yielding yielding;         ///< of its bonds
+  int n_remembered = 0;      ///< numbers that each bond of each lane remembers
   std::int64_t memory = 0;   ///< of the block's first number in the array of what bonds remember
 
   int n_grains() const;
@@ -45,7 +47,7 @@ struct Block {
 /// An array is [block][node][component][lane]; component c of node i of grain g is at
 /// first(g) + (3 i + c) stride(g). Blocks hold grains of one template, and grains with alpha = 0 are kept
 /// apart from the others, so that a block without many-body forces never computes volumes. So are grains whose bonds
-/// break, by how they do: what bonds remember is an array [block][bond][lane] of such blocks alone.
+/// break or yield, by how they do: what bonds remember is an array [block][bond][number][lane] of such blocks alone.
 class LaneLayout {
 public:
   explicit LaneLayout(const Packing& packing, Precision precision = Precision::full);
@@ -72,15 +74,17 @@ public:
   std::int64_t memory_size() const { return memory_size_; }
   /// The bonds of a grain remember something.
   bool remembers(int grain) const { return slots_[grain].memory >= 0; }
-  /// Place of a bond's number; `bond` counts those of the template.
-  std::int64_t memory_index(int grain, std::int64_t bond) const {
-    return slots_[grain].memory + bond * slots_[grain].stride;
+  /// Numbers that each bond of a grain remembers.
+  int n_remembered(int grain) const { return slots_[grain].n_remembered; }
+  /// Place of one of a bond's numbers; `bond` counts those of the template.
+  std::int64_t memory_index(int grain, std::int64_t bond, int number) const {
+    return slots_[grain].memory + (bond * slots_[grain].n_remembered + number) * slots_[grain].stride;
   }
   /// First bond of each node of a grain that remembers, and their number at last (size n + 1).
   const std::vector<std::int64_t>& first_bonds(int grain) const {
     return first_bonds_.at(slots_[grain].template_index);
   }
-  /// Most bonds that any node of a grain that remembers is the first of, in the whole packing; 0 when there is none.
+  /// Most numbers that the bonds remember which any node is the first of, in the whole packing; 0 when none does.
   int memory_slots() const { return memory_slots_; }
   /// Bytes of the layout itself.
   std::size_t bytes() const;
@@ -90,7 +94,7 @@ public:
 private:
   struct Slot {
     std::int64_t first = 0;
-    int stride = 1, n_nodes = 0, block = -1, lane = 0, template_index = 0;
+    int stride = 1, n_nodes = 0, block = -1, lane = 0, template_index = 0, n_remembered = 0;
     std::int64_t memory = -1;
   };
   void count_bonds(const Packing& packing);

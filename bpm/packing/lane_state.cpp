@@ -40,11 +40,14 @@ template <class Array> void set_triple(Array& array, std::int64_t at, std::int64
   }
 }
 
+/// e_c^2 of bonds that yield and never break; a float holds it.
+constexpr double unbreakable = 1e30;
+
 /// e_c^2 of each bond of a grain. With scatter the strengths follow the distribution of Weibull, whose share of bonds
 /// that are weaker than e is 1 - exp(-(e / strain)^modulus); the numbers depend on the seed and the grain's number
 /// alone.
 std::vector<double> squared_strengths(const Breaking& breaking, int grain, std::int64_t n_bonds) {
-  std::vector<double> limits(n_bonds, breaking.strain * breaking.strain);
+  std::vector<double> limits(n_bonds, breaking.is_possible() ? breaking.strain * breaking.strain : unbreakable);
   if (breaking.weibull_modulus > 0.0) {
     Random random((breaking.seed << 32) ^ (0x9e3779b97f4a7c15ULL * (static_cast<std::uint64_t>(grain) + 1)));
     for (double& limit : limits) {
@@ -81,16 +84,10 @@ void LaneState::reset(const Packing& packing) {
     arrays.f.assign(layout_.size(), 0);
     arrays.memory.assign(layout_.memory_size(), 1); // of idle lanes: a strain that they never reach
   });
+  begin_idle_memory(packing);
   for (const int g : layout_.grains()) {
     if (layout_.remembers(g)) {
-      const std::vector<double> limits =
-          squared_strengths(packing.grains[g].breaking, g, layout_.first_bonds(g).back());
-      visit([&](auto& arrays) {
-        for (std::size_t b = 0; b < limits.size(); ++b) {
-          arrays.memory[layout_.memory_index(g, static_cast<std::int64_t>(b))] =
-              static_cast<typename std::remove_reference_t<decltype(arrays)>::Real>(limits[b]);
-        }
-      });
+      begin_memory(packing, g);
     }
   }
   quantum_ = precision() == Precision::mixed ? quantum_for(packing) : 1.0;
@@ -115,6 +112,38 @@ void LaneState::reset_idle_lanes(const Block& block, const GrainTemplate& undefo
         set_triple(arrays.x, at, block.n_lanes, undeformed.position[node] / quantum_);
         set_triple(arrays.v, at, block.n_lanes, Vector3::Zero());
         set_triple(arrays.f, at, block.n_lanes, Vector3::Zero());
+      }
+    }
+  });
+}
+
+/// Bonds of idle lanes that yield have the lengths of the template too: they stay cheap.
+void LaneState::begin_idle_memory(const Packing& packing) {
+  visit([&](auto& arrays) {
+    using Real = typename std::remove_reference_t<decltype(arrays)>::Real;
+    for (const Block& block : layout_.blocks()) {
+      Real* memory = arrays.memory.data() + block.memory;
+      const std::vector<Bond>& bonds = packing.templates[block.template_index]->bonds;
+      for (std::size_t b = 0; block.n_remembered == YieldingBondLaw::n_remembered && b < bonds.size(); ++b) {
+        Real* of_bond = memory + b * block.n_remembered * block.n_lanes;
+        std::fill(of_bond + block.n_lanes, of_bond + 2 * block.n_lanes, static_cast<Real>(bonds[b].r0));
+        std::fill(of_bond + 2 * block.n_lanes, of_bond + 3 * block.n_lanes, Real{0});
+      }
+    }
+  });
+}
+
+/// Strengths, and with bonds that yield their lengths without force and no plastic strain.
+void LaneState::begin_memory(const Packing& packing, int grain) {
+  const std::vector<Bond>& bonds = packing.template_of(grain).bonds;
+  const auto n_bonds = static_cast<std::int64_t>(bonds.size());
+  const std::vector<double> limits = squared_strengths(packing.grains[grain].breaking, grain, n_bonds);
+  visit([&](auto& arrays) {
+    using Real = typename std::remove_reference_t<decltype(arrays)>::Real;
+    for (std::int64_t b = 0; b < n_bonds; ++b) {
+      const double numbers[] = {limits[b], bonds[b].r0, 0.0};
+      for (int k = 0; k < layout_.n_remembered(grain); ++k) {
+        arrays.memory[layout_.memory_index(grain, b, k)] = static_cast<Real>(numbers[k]);
       }
     }
   });
@@ -175,9 +204,10 @@ Vector3 LaneState::force(int grain, int node) const {
       [&](const auto& arrays) { return triple(arrays.f, layout_.index(grain, node, 0), layout_.stride(grain)); });
 }
 
-double LaneState::bond_memory(int grain, std::int64_t bond) const {
-  return visit(
-      [&](const auto& arrays) { return static_cast<double>(arrays.memory[layout_.memory_index(grain, bond)]); });
+double LaneState::bond_memory(int grain, std::int64_t bond, int number) const {
+  return visit([&](const auto& arrays) {
+    return static_cast<double>(arrays.memory[layout_.memory_index(grain, bond, number)]);
+  });
 }
 
 std::vector<double> LaneState::memory_rows(int grain) const {
@@ -186,8 +216,11 @@ std::vector<double> LaneState::memory_rows(int grain) const {
   if (layout_.remembers(grain)) {
     const std::vector<std::int64_t>& first = layout_.first_bonds(grain);
     for (int node = 0; node < layout_.n_nodes(grain); ++node) {
+      std::size_t slot = n_slots * node;
       for (std::int64_t b = first[node]; b < first[node + 1]; ++b) {
-        rows[n_slots * node + (b - first[node])] = bond_memory(grain, b);
+        for (int k = 0; k < layout_.n_remembered(grain); ++k) {
+          rows[slot++] = bond_memory(grain, b, k);
+        }
       }
     }
   }
@@ -202,9 +235,11 @@ void LaneState::set_memory_rows(int grain, const double* rows) {
   visit([&](auto& arrays) {
     using Real = typename std::remove_reference_t<decltype(arrays)>::Real;
     for (int node = 0; node < layout_.n_nodes(grain); ++node) {
+      const double* row = rows + static_cast<std::int64_t>(layout_.memory_slots()) * node;
       for (std::int64_t b = first[node]; b < first[node + 1]; ++b) {
-        arrays.memory[layout_.memory_index(grain, b)] =
-            static_cast<Real>(rows[static_cast<std::int64_t>(layout_.memory_slots()) * node + b - first[node]]);
+        for (int k = 0; k < layout_.n_remembered(grain); ++k) {
+          arrays.memory[layout_.memory_index(grain, b, k)] = static_cast<Real>(*row++);
+        }
       }
     }
   });

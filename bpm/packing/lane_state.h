@@ -54,8 +54,8 @@ public:
   void set_velocity(int grain, int node, const Vector3& v);
   void set_force(int grain, int node, const Vector3& f);
 
-  /// What a bond of a grain remembers; of grains whose bonds do.
-  double bond_memory(int grain, std::int64_t bond) const;
+  /// One of the numbers that a bond of a grain remembers; of grains whose bonds do.
+  double bond_memory(int grain, std::int64_t bond, int number) const;
   /// What all bonds of a grain remember: for each node a row of LaneLayout::memory_slots() numbers, those of the bonds
   /// that it is the first node of and then zeros.
   std::vector<double> memory_rows(int grain) const;
@@ -89,6 +89,9 @@ public:
   const std::vector<Vector3>& origins() const { return origin_; }
 
 private:
+  void begin_memory(const Packing& packing, int grain);
+  void begin_idle_memory(const Packing& packing);
+
   const LaneLayout& layout_;
   LaneArrays<double, double> full_;
   LaneArrays<std::int32_t, float> mixed_;

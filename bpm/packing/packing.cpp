@@ -50,6 +50,10 @@ bool bonds_break(const Packing& packing) {
   return std::ranges::any_of(packing.grains, [](const Grain& grain) { return grain.breaking.is_possible(); });
 }
 
+bool bonds_yield(const Packing& packing) {
+  return std::ranges::any_of(packing.grains, [](const Grain& grain) { return grain.yielding.is_possible(); });
+}
+
 Packing make_packing(const Box& box, std::vector<std::shared_ptr<const GrainTemplate>> templates,
                      const std::vector<Placement>& placements) {
   Packing packing;

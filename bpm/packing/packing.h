@@ -3,6 +3,7 @@
 
 #include "bpm/grain/grain_template.h"
 #include "bpm/laws/breaking.h"
+#include "bpm/laws/yielding.h"
 #include "bpm/packing/box.h"
 #include "bpm/packing/snapshot.h"
 
@@ -20,6 +21,14 @@ struct Grain {
   double alpha = 0.0;        ///< many-body coefficient, k d
   std::int64_t molecule = 0; ///< number shown in files
   Breaking breaking = {};    ///< what breaks its bonds
+  Yielding yielding = {};    ///< when its bonds yield
+
+  /// Numbers that each of its bonds remembers; 0 for elastic bonds that do not break.
+  int n_remembered() const {
+    return yielding.is_possible()   ? YieldingBondLaw::n_remembered
+           : breaking.is_possible() ? BreakingBondLaw::n_remembered
+                                    : 0;
+  }
 };
 
 /// Everything a run starts from: the cell, the grains and every node's position and velocity.
@@ -46,6 +55,8 @@ struct Packing {
 
 /// True when the bonds of some grain may break.
 bool bonds_break(const Packing& packing);
+/// True when the bonds of some grain may yield.
+bool bonds_yield(const Packing& packing);
 
 /// Where one grain goes: the template's nodes are rotated about their mean, then moved to `centre`.
 struct Placement {

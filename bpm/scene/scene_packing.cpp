@@ -39,6 +39,7 @@ std::vector<Grain> grains_of(const Scene& scene, const PoissonTable& table) {
     grain.species = static_cast<int>(s);
     grain.breaking = species.breaking;
     grain.breaking.seed = scene.seed;
+    grain.yielding = species.yielding;
     try {
       grain.alpha = resolve_alpha(species.material, scene.material, table);
     } catch (const InputError& error) {

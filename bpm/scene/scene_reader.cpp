@@ -4,8 +4,8 @@
 #include "bpm/laws/hertz.h"
 #include "bpm/parallel/usable_cores.h"
 #include "bpm/scene/override_text.h"
-#include "bpm/scene/scene.h"
 #include "bpm/scene/read_template.h"
+#include "bpm/scene/scene.h"
 #include "bpm/scene/scene_schema.h"
 #include "bpm/scene/scene_size.h"
 #include "bpm/scene/scene_stages.h"
@@ -210,9 +210,11 @@ void read_species(const SceneTables& tables, Scene& scene) {
     species.count = table.integer("count", 0);
     species.material = read_alpha(table, true);
     species.breaking = read_breaking(table);
-    if (species.breaking.is_possible() &&
+    species.yielding = read_yielding(table);
+    if ((species.breaking.is_possible() || species.yielding.is_possible()) &&
         scene.templates[species.template_index].spec.shape == TemplateSpec::Shape::periodic_box) {
-      table.fail("break_strain", "is not for a periodic_box: bonds across the cell's boundary do not break");
+      table.fail(species.breaking.is_possible() ? "break_strain" : "yield_strain",
+                 "is not for a periodic_box: bonds across the cell's boundary neither break nor yield");
     }
     scene.species.push_back(species);
   }
@@ -220,13 +222,13 @@ void read_species(const SceneTables& tables, Scene& scene) {
 
 /// A copy that rests begins with whole bonds.
 void check_rests(const Scene& scene) {
-  const bool some_break =
-      std::ranges::any_of(scene.species, [](const SceneSpecies& s) { return s.breaking.is_possible(); });
+  const bool some_break = std::ranges::any_of(
+      scene.species, [](const SceneSpecies& s) { return s.breaking.is_possible() || s.yielding.is_possible(); });
   for (const SceneMeasure& measure : scene.measures) {
     if (measure.plan.rest && some_break) {
       throw InputError(
-          fmt::format("{}: measure.relaxed = true is not for grains with break_strain: the copy that rests "
-                      "does not know which bonds are broken",
+          fmt::format("{}: measure.relaxed = true is not for grains with break_strain or yield_strain: the copy that "
+                      "rests does not know what their bonds remember",
                       scene.path.string()));
     }
   }

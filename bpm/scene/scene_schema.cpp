@@ -162,7 +162,7 @@ std::vector<SceneSection> material_sections() {
                joined({text_key("name", "", "for messages and tables"),
                        text_key("template", "the only one", "name of a [[template]]"),
                        required(integer_key("count", 1.0, most_nodes, "", "number of grains"))},
-                      joined(alpha_keys(true), breaking_keys()))),
+                      joined(alpha_keys(true), bond_keys()))),
       start_section(),
   };
 }

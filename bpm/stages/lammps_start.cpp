@@ -20,7 +20,7 @@ SceneSection LammpsStart::section() {
 
 LammpsStart::LammpsStart(const SceneTable& table, const StartFiles& files)
     : reference_(files.file(table, "lammps_reference")), frame_(static_cast<int>(table.integer("frame", -1))),
-      material_(read_alpha(table, false)), breaking_(read_breaking(table)) {
+      material_(read_alpha(table, false)), breaking_(read_breaking(table)), yielding_(read_yielding(table)) {
   if (table.has("lammps_state")) {
     state_ = files.file(table, "lammps_state");
   }
@@ -38,6 +38,7 @@ Packing LammpsStart::make(const StartContext& context) const {
     grain.alpha = alpha;
     grain.breaking = breaking_;
     grain.breaking.seed = context.seed;
+    grain.yielding = yielding_;
   }
   return packing;
 }

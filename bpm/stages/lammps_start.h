@@ -24,6 +24,7 @@ private:
   int frame_;
   AlphaChoice material_;
   Breaking breaking_;
+  Yielding yielding_;
 };
 
 } // namespace boba

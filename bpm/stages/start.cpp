@@ -44,7 +44,18 @@ Breaking read_breaking(const SceneTable& table) {
   return breaking;
 }
 
-std::vector<SceneKey> breaking_keys() {
+Yielding read_yielding(const SceneTable& table) {
+  const std::optional<double> strain = table.maybe_real("yield_strain");
+  if (!strain && table.has("yield_hardening")) {
+    table.fail("yield_hardening", "needs yield_strain beside it");
+  }
+  if (strain && table.boolean("break_smoothing", false)) {
+    table.fail("break_smoothing", "is not for bonds that yield");
+  }
+  return {strain.value_or(0.0), table.real("yield_hardening", 0.0)};
+}
+
+std::vector<SceneKey> bond_keys() {
   return {above_key("break_strain", "", 0.0, 10.0, "",
                     "strain (r - r0) / r0 above which a bond breaks for good; its nodes then touch like any unbonded "
                     "pair (docs/notation.md)"),
@@ -52,7 +63,11 @@ std::vector<SceneKey> breaking_keys() {
                      "bonds break when they are stretched or compressed too far, or in tension alone"),
           boolean_key("break_smoothing", "false", "a bond's force fades as 1 - (e / break_strain)^8"),
           above_key("break_scatter", "", 0.0, 1000.0, "",
-                    "strengths scatter from bond to bond: Weibull's modulus, with break_strain as scale")};
+                    "strengths scatter from bond to bond: Weibull's modulus, with break_strain as scale"),
+          above_key("yield_strain", "", 0.0, 0.5, "",
+                    "elastic strain |r - r_eq| / r_eq at which a bond yields: its length without force, r_eq, follows"),
+          real_key("yield_hardening", "", 0.0, 100.0, "0",
+                   "by how much that strain grows with the plastic strain of the bond; 0: perfectly plastic")};
 }
 
 std::filesystem::path StartFiles::file(const SceneTable& table, const std::string& key) const {

@@ -32,8 +32,10 @@ std::vector<SceneKey> alpha_keys(bool is_needed);
 
 /// What breaks the bonds of some grains, but for the seed. \throws InputError when a key has nothing to act on.
 Breaking read_breaking(const SceneTable& table);
+/// When they yield. \throws InputError as above, and with break_smoothing.
+Yielding read_yielding(const SceneTable& table);
 /// The keys of such a table.
-std::vector<SceneKey> breaking_keys();
+std::vector<SceneKey> bond_keys();
 
 struct SceneTemplate {
   std::string name;
@@ -46,6 +48,7 @@ struct SceneSpecies {
   std::int64_t count = 0;
   AlphaChoice material;
   Breaking breaking; ///< but for the seed
+  Yielding yielding;
 };
 
 /// The grains that a scene names.

@@ -72,7 +72,7 @@ SceneSection start_section() {
   section.doc = fmt::format("Start from files instead of an `insert` stage: {}.", fmt::join(what, ", or "));
   section.keys.push_back(
       integer_key("frame", -1e9, 1e9, "-1", "frame of the trajectory or dump, counted from 0; negative from the end"));
-  section.keys = joined(joined(std::move(section.keys), alpha_keys(false)), breaking_keys());
+  section.keys = joined(joined(std::move(section.keys), alpha_keys(false)), bond_keys());
   return section;
 }
 

@@ -47,7 +47,8 @@ SceneSection TrajectoryStart::section() {
 
 TrajectoryStart::TrajectoryStart(const SceneTable& table, const StartFiles& files)
     : file_(files.file(table, "trajectory")), frame_(static_cast<int>(table.integer("frame", -1))),
-      material_(read_alpha(table, false)), strain_(table.maybe_real("strain")), breaking_(read_breaking(table)) {}
+      material_(read_alpha(table, false)), strain_(table.maybe_real("strain")), breaking_(read_breaking(table)),
+      yielding_(read_yielding(table)) {}
 
 Packing TrajectoryStart::make(const StartContext& context) const {
   context.narrate("reading " + file_.string());
@@ -73,6 +74,7 @@ Packing TrajectoryStart::make(const StartContext& context) const {
   for (Grain& grain : packing.grains) {
     grain.breaking = breaking_;
     grain.breaking.seed = context.seed;
+    grain.yielding = yielding_;
   }
   return packing;
 }

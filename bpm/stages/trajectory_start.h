@@ -22,6 +22,7 @@ private:
   AlphaChoice material_;
   std::optional<double> strain_; ///< instead of the frame's
   Breaking breaking_;
+  Yielding yielding_;
 };
 
 } // namespace boba

@@ -50,9 +50,28 @@ template <class Law> constexpr bool remembers = requires {
   Law::n_remembered;
 };
 
-/// What bond b remembers in the lanes at hand; `memory` points to the first of them.
-template <class S, class Real> inline typename S::V remembered(const Real* memory, std::int64_t b) {
-  return load<typename S::V>(memory + b * S::stride);
+/// What one bond remembers in the lanes at hand.
+template <class V, int n> struct Remembered { V c[n]; };
+
+/// That of bond b; `memory` points to the first lane.
+template <class S, class Law, class Real>
+inline Remembered<typename S::V, Law::n_remembered> remembered(const Real* memory, std::int64_t b) {
+  Remembered<typename S::V, Law::n_remembered> values;
+  for (int k = 0; k < Law::n_remembered; ++k) {
+    values.c[k] = load<typename S::V>(memory + (b * Law::n_remembered + k) * S::stride);
+  }
+  return values;
+}
+template <class S, class Law, class Real>
+inline void remember(Real* memory, std::int64_t b, const Remembered<typename S::V, Law::n_remembered>& values) {
+  for (int k = 0; k < Law::n_remembered; ++k) {
+    store<typename S::V>(memory + (b * Law::n_remembered + k) * S::stride, values.c[k]);
+  }
+}
+/// The cube of the length that V0 counts; 0 of a broken bond.
+template <class Law, class V, class Real, int n> inline V rest_cube(Real r0, const Remembered<V, n>& memory) {
+  const V length = Law::rest_length(r0, memory.c);
+  return Law::if_whole(length * length * length, memory.c);
 }
 
 /// Adds r^3 of the bonds of the nodes [begin, end) to the volumes of both of their nodes, but not to nodes from own_end
@@ -96,14 +115,14 @@ void whole_node_volumes(const NetworkOf<Real>& network, const BlockArraysOf<Coor
     for (std::int64_t b = network.first_bond[i]; b < network.first_bond[i + 1]; ++b) {
       const Real r0 = network.bonds[b].r0;
       const std::int64_t j = network.bonds[b].other;
-      const V memory = remembered<S>(a.memory + lane, b);
-      const V cube = Law::if_whole(cube_of(separation<S>(xi, load3<P>(x, j, stride))), memory);
-      const V rest_cube = Law::if_whole(splat<V>(r0 * r0 * r0), memory);
+      const Remembered<V, Law::n_remembered> memory = remembered<S, Law>(a.memory + lane, b);
+      const V cube = Law::if_whole(cube_of(separation<S>(xi, load3<P>(x, j, stride))), memory.c);
+      const V at_rest = rest_cube<Law>(r0, memory);
       sum += cube;
-      rest_sum += rest_cube;
+      rest_sum += at_rest;
       if (!shared || j < own_end) {
         store<V>(volume + j * stride, load<V>(volume + j * stride) + cube);
-        store<V>(rest_volume + j * stride, load<V>(rest_volume + j * stride) + rest_cube);
+        store<V>(rest_volume + j * stride, load<V>(rest_volume + j * stride) + at_rest);
       }
     }
     store<V>(volume + i * stride, S::in_diameters(sum, q3));
@@ -162,12 +181,11 @@ void volumes_of_whole_bonds(const NetworkOf<Real>& network, const BlockArraysOf<
     for_each_bond_from_before(network, range, [&](std::int64_t i, std::int64_t b) {
       const Real r0 = network.bonds[b].r0;
       const std::int64_t j = network.bonds[b].other;
-      const V memory = remembered<S>(a.memory + lane, b);
+      const Remembered<V, Law::n_remembered> memory = remembered<S, Law>(a.memory + lane, b);
       const V cube =
-          Law::if_whole(cube_of(separation<S>(load3<P>(x, i, S::stride), load3<P>(x, j, S::stride))), memory);
+          Law::if_whole(cube_of(separation<S>(load3<P>(x, i, S::stride), load3<P>(x, j, S::stride))), memory.c);
       store<V>(volume + j * S::stride, load<V>(volume + j * S::stride) + cube);
-      store<V>(rest_volume + j * S::stride,
-               load<V>(rest_volume + j * S::stride) + Law::if_whole(splat<V>(r0 * r0 * r0), memory));
+      store<V>(rest_volume + j * S::stride, load<V>(rest_volume + j * S::stride) + rest_cube<Law>(r0, memory));
     });
     whole_node_volumes<S, true, Law>(network, a, lane, range.begin, range.end, range.own_end);
   });
@@ -235,18 +253,19 @@ inline V bond_scale(const BondRecordOf<Real>& bond, const Triple<V>& d, V r2, V 
 /// The same by a law with a memory; `rest_volumes`: V0_i + V0_j of the bonds that are whole.
 template <class S, bool many_body, class Law, class V = typename S::V, class Real = typename S::Real>
 inline V remembering_scale(const BondRecordOf<Real>& bond, const Triple<V>& d, V r2, V quantum, const Triple<V>& vi,
-                           const Triple<V>& vj, V volumes, V rest_volumes, V alpha, const Law& law, V& memory) {
+                           const Triple<V>& vj, V volumes, V rest_volumes, V alpha, const Law& law,
+                           Remembered<V, Law::n_remembered>& memory) {
   const V inverse_r = inverse_sqrt(r2);
   const V r = S::in_diameters(r2 * inverse_r, quantum);
   const V normal_velocity = dot(d, difference(vi, vj)) * inverse_r;
   V force;
   if constexpr (many_body) {
     const V root = cube_root(volumes / rest_volumes);
-    force = law.force(alpha, r, bond.r0, bond.inverse_r0, root, normal_velocity, memory);
+    force = law.force(alpha, r, bond.r0, bond.inverse_r0, root, normal_velocity, memory.c);
   } else {
-    force = law.pairwise_force(r, bond.r0, bond.inverse_r0, normal_velocity, memory);
+    force = law.pairwise_force(r, bond.r0, bond.inverse_r0, normal_velocity, memory.c);
   }
-  return Law::if_whole(force * inverse_r, memory);
+  return Law::if_whole(force * inverse_r, memory.c);
 }
 
 /// Takes s d, the force on a bond's first node, from its second node j.
@@ -267,13 +286,13 @@ inline typename S::V rest_volumes_of(const BlockArraysOf<Coordinate, Real>& a, i
   return load<V>(a.rest_volume + lane + i * S::stride) + load<V>(a.rest_volume + lane + j * S::stride);
 }
 
-/// True when any lane of `now` is not the same as before.
-template <class V> inline bool any_changed(V before, V now) {
-  if constexpr (lanes_of<V> == 1) {
-    return before != now;
-  } else {
-    return any_above(before, now); // what is remembered only falls
+/// True when any lane of any number is not the same as before.
+template <class V, int n> inline bool any_changed(const Remembered<V, n>& before, const Remembered<V, n>& now) {
+  bool changed = false;
+  for (int k = 0; k < n; ++k) {
+    changed |= any_different(before.c[k], now.c[k]);
   }
+  return changed;
 }
 
 /// Force over distance of bond b from node i, by a law with a memory, which is written back where it changes.
@@ -285,12 +304,12 @@ inline V scale_and_remember(const BlockArraysOf<Coordinate, Real>& a, int lane, 
   if constexpr (many_body) {
     rest_volumes = rest_volumes_of<S>(a, lane, i, bond.other);
   }
-  const V before = remembered<S>(a.memory + lane, b);
-  V memory = before;
+  const Remembered<V, Law::n_remembered> before = remembered<S, Law>(a.memory + lane, b);
+  Remembered<V, Law::n_remembered> memory = before;
   const V s = remembering_scale<S, many_body>(bond, d, r2, quantum, vi, vj, volumes, rest_volumes, alpha, law, memory);
   if (__builtin_expect(any_changed(before, memory), 0) && a.keeps_memory) {
-    store<V>(a.memory + lane + b * S::stride, memory);
-    ++sums.n_broken;
+    remember<S, Law>(a.memory + lane, b, memory);
+    sums.n_broken += any_different(before.c[0], memory.c[0]) ? 1 : 0;
   }
   return s;
 }
@@ -470,7 +489,8 @@ void lanes_from_before(const NetworkOf<Real>& network, const BlockArraysOf<Coord
     }
     V s;
     if constexpr (remembers<Law>) {
-      V rest_volumes{}, memory = remembered<S>(a.memory + lane, b);
+      V rest_volumes{};
+      Remembered<V, Law::n_remembered> memory = remembered<S, Law>(a.memory + lane, b);
       if constexpr (many_body) {
         rest_volumes = rest_volumes_of<S>(a, lane, i, j);
       }

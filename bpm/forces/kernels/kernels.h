@@ -5,6 +5,7 @@
 #include "bpm/laws/breaking.h"
 #include "bpm/laws/contact.h"
 #include "bpm/laws/hertz.h"
+#include "bpm/laws/yielding.h"
 #include "bpm/packing/max_lanes.h"
 
 #include <compare>
@@ -53,8 +54,8 @@ template <class Coordinate, class Real> struct BlockArraysOf {
   /// Velocities of the nodes from NodeRange::own_end on, as they were before another thread kicked them; null: all
   /// nodes are the call's own.
   const Real* v_beyond = nullptr;
-  /// What the bonds of laws with a memory remember, [bond][lane], and whether a pass may change that; their V0 are
-  /// scratch like `volume`.
+  /// What the bonds of laws with a memory remember, [bond][number][lane], and whether a pass may change that; their V0
+  /// are scratch like `volume`.
   Real *memory = nullptr, *rest_volume = nullptr;
   bool keeps_memory = false;
 };
@@ -248,6 +249,7 @@ template <class Coordinate, class Real> struct LaneKernels {
   void (*bonds_from_before)(const NetworkOf<Real>&, const BlockArraysOf<Coordinate, Real>&, const BondParameters&,
                             bool many_body, const NodeRange&);
   RememberingKernels<Coordinate, Real, BreakingBondLaw> breaking;
+  RememberingKernels<Coordinate, Real, YieldingBondLaw> yielding;
   DriftResult (*drift)(Coordinate* x, const Real* v, int n_nodes, int n_lanes, const Drift&);
   /// to[node] of every listed node of one grain: its position (origin + what the arrays hold) and velocity.
   void (*collect)(const std::int32_t* nodes, std::int64_t n, const Coordinate* x, const Real* v, int stride,

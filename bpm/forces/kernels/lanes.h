@@ -3,6 +3,8 @@
 // own.
 #pragma once
 
+#include "bpm/laws/law_function.h"
+
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -219,22 +221,23 @@ inline float cube_root(float x) {
   return std::cbrt(x);
 }
 
+/// Bounds that a float holds.
 template <class V> inline bool any_outside(V x, double low, double high) {
+  if constexpr (lanes_of<V> == 1) {
+    return (x < low) | (x > high);
+  } else {
 #if defined(__AVX512F__)
-  if constexpr (std::is_same_v<V, Wide>) {
-    return !_kortestz_mask8_u8(_mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(low), _CMP_LT_OQ),
-                               _mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(high), _CMP_GT_OQ));
-  }
-  if constexpr (std::is_same_v<V, WideSingle>) {
-    return !_kortestz_mask16_u8(_mm512_cmp_ps_mask((__m512)x, _mm512_set1_ps(static_cast<float>(low)), _CMP_LT_OQ),
-                                _mm512_cmp_ps_mask((__m512)x, _mm512_set1_ps(static_cast<float>(high)), _CMP_GT_OQ));
-  }
+    if constexpr (std::is_same_v<V, Wide>) {
+      return !_kortestz_mask8_u8(_mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(low), _CMP_LT_OQ),
+                                 _mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(high), _CMP_GT_OQ));
+    }
+    if constexpr (std::is_same_v<V, WideSingle>) {
+      return !_kortestz_mask16_u8(_mm512_cmp_ps_mask((__m512)x, _mm512_set1_ps(static_cast<float>(low)), _CMP_LT_OQ),
+                                  _mm512_cmp_ps_mask((__m512)x, _mm512_set1_ps(static_cast<float>(high)), _CMP_GT_OQ));
+    }
 #endif
-  bool outside = false;
-  for (int l = 0; l < lanes_of<V>; ++l) {
-    outside |= (x[l] < low) | (x[l] > high);
+    return holds_in_any((x < splat<V>(low)) | (x > splat<V>(high)));
   }
-  return outside;
 }
 
 /// True also where x is not a number.
@@ -250,11 +253,24 @@ template <class V> inline bool any_above(V x, V limit) {
       return _mm512_cmp_ps_mask((__m512)x, (__m512)limit, _CMP_NLE_UQ) != 0;
     }
 #endif
-    bool all_below = true;
-    for (int l = 0; l < lanes_of<V>; ++l) {
-      all_below &= x[l] <= limit[l];
+    return holds_in_any(~(x <= limit));
+  }
+}
+
+/// True when a and b are not the same in some lane.
+template <class V> inline bool any_different(V a, V b) {
+  if constexpr (lanes_of<V> == 1) {
+    return a != b;
+  } else {
+#if defined(__AVX512F__)
+    if constexpr (std::is_same_v<V, Wide>) {
+      return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_NEQ_UQ) != 0;
     }
-    return !all_below;
+    if constexpr (std::is_same_v<V, WideSingle>) {
+      return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_NEQ_UQ) != 0;
+    }
+#endif
+    return holds_in_any(a != b);
   }
 }
 
