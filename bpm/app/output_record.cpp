@@ -131,7 +131,7 @@ void OutputRecord::add_numbered(const std::string& folder, std::string_view begi
     }
     const auto [stop, bad] = std::from_chars(file.data() + begin.size(), file.data() + file.size(), number);
     const bool is_numbered = bad == std::errc() && stop == file.data() + file.size() - end.size();
-    const std::string name = folder + "/" + file;
+    const std::string name = (fs::path(folder) / file).string();
     if (is_numbered && number <= last && !sums_.contains(name)) {
       extend(name);
     }

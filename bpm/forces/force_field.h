@@ -27,7 +27,7 @@ public:
 
   /// The layout holds other grains than before.
   void layout_changed();
-  /// The state was read from elsewhere, with what its bonds remember; see also ContactList::invalidate.
+  /// The state was read from elsewhere, with what its bonds remember; see also forget_contacts.
   void bonds_changed() { bonds_.bonds_changed(); }
 
   /// Moves all nodes; per block, what the drift saw.

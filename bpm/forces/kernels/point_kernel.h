@@ -21,13 +21,10 @@ inline PointVector squared_lengths(PointVector a, PointVector b, PointVector c, 
   b *= b;
   c *= c;
   d *= d;
-  using Places = Vector<std::int64_t, 4>;
-  const PointVector xz_ab = __builtin_shuffle(a, b, Places{0, 4, 2, 6}),
-                    y_ab = __builtin_shuffle(a, b, Places{1, 5, 3, 7});
-  const PointVector xz_cd = __builtin_shuffle(c, d, Places{0, 4, 2, 6}),
-                    y_cd = __builtin_shuffle(c, d, Places{1, 5, 3, 7});
-  return __builtin_shuffle(xz_ab, xz_cd, Places{0, 1, 4, 5}) + __builtin_shuffle(y_ab, y_cd, Places{0, 1, 4, 5}) +
-         __builtin_shuffle(xz_ab, xz_cd, Places{2, 3, 6, 7});
+  const PointVector xz_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), y_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const PointVector xz_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), y_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return __builtin_shufflevector(xz_ab, xz_cd, 0, 1, 4, 5) + __builtin_shufflevector(y_ab, y_cd, 0, 1, 4, 5) +
+         __builtin_shufflevector(xz_ab, xz_cd, 2, 3, 6, 7);
 }
 
 /// Writes down the candidates that touch, in order and without a branch; last[node] is the end of a node's.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a contact list follows its grains: frames, places of nodes, and how far nodes deviate from them.
-#include "bpm/forces/contact_list.h"
+#include "bpm/forces/grain_tracking.h"
+
 #include "bpm/forces/lane_kernels.h"
 
 #include <algorithm>
@@ -22,23 +22,25 @@ kernels::FrameArraysOf<Coordinate> frame_arrays_of(const Block& block, const Lan
                                                    const float* places, double quantum) {
   return {arrays.x.data() + block.offset, places + block.offset, block.n_nodes, block.n_lanes, quantum};
 }
-
 } // namespace
 
-Vector3 ContactList::place(int grain, int node) const {
-  const std::int64_t at = layout_.index(grain, node, 0), stride = layout_.stride(grain);
-  return {place_[at], place_[at + stride], place_[at + 2 * stride]};
+GrainTracking::GrainTracking(const LaneLayout& layout, const kernels::KernelTable& table, const ContactReach& reach)
+    : layout_(layout), table_(table), reach_(reach), fast_motion_(0.1 * reach.reserve()) {}
+
+void GrainTracking::layout_changed() {
+  place_.assign(layout_.size(), 0.0f);
+  grains_.assign(layout_.n_grains(), {});
 }
 
-void ContactList::track(const LaneState& state) {
+void GrainTracking::look(const LaneState& state, bool afresh) {
 #pragma omp parallel for schedule(dynamic, 1)
   for (int b = 0; b < static_cast<int>(layout_.blocks().size()); ++b) {
-    if (built_) {
-      track_block(b, state);
+    if (!afresh) {
+      look_at_block(b, state);
     }
     for (const int grain : layout_.blocks()[b].grain) {
       if (grain >= 0) {
-        if (!built_) {
+        if (afresh) {
           note_all(grain, state);
         }
         follow(grain, state);
@@ -47,7 +49,28 @@ void ContactList::track(const LaneState& state) {
   }
 }
 
-kernels::LaneFrames ContactList::fit_frames(int b, const LaneState& state) {
+void GrainTracking::forget_news() {
+  for (TrackedGrain& grain : grains_) {
+    grain.all_noted = false;
+    grain.moved.clear();
+    grain.moved_to.clear();
+  }
+}
+
+std::size_t GrainTracking::bytes() const {
+  std::size_t bytes = place_.capacity() * sizeof(float);
+  for (const TrackedGrain& grain : grains_) {
+    bytes += grain.grid.bytes();
+  }
+  return bytes;
+}
+
+Vector3 GrainTracking::place(int grain, int node) const {
+  const std::int64_t at = layout_.index(grain, node, 0), stride = layout_.stride(grain);
+  return {place_[at], place_[at + stride], place_[at + 2 * stride]};
+}
+
+kernels::LaneFrames GrainTracking::fit_frames(int b, const LaneState& state) {
   const Block& block = layout_.blocks()[b];
   kernels::FrameFit fit{};
   for (int lane = 0; lane < block.n_lanes; ++lane) {
@@ -81,12 +104,12 @@ kernels::LaneFrames ContactList::fit_frames(int b, const LaneState& state) {
     for (int c = 0; c < 9; ++c) {
       frames.f[c][lane] = grain.frame.linear(c / 3, c % 3);
     }
-    frames.threshold2[lane] = far_share * skin_ * far_share * skin_;
+    frames.threshold2[lane] = reach_.far2();
   }
   return frames;
 }
 
-void ContactList::track_block(int b, const LaneState& state) {
+void GrainTracking::look_at_block(int b, const LaneState& state) {
   thread_local std::vector<std::int32_t> far;
   const Block& block = layout_.blocks()[b];
   const kernels::LaneFrames frames = fit_frames(b, state);
@@ -110,16 +133,16 @@ void ContactList::track_block(int b, const LaneState& state) {
   }
 }
 
-bool ContactList::out_of_shape(const TrackedGrain& grain, int n_nodes) const {
+bool GrainTracking::out_of_shape(const TrackedGrain& grain, int n_nodes) const {
   const double e = shortening(grain.frame.linear);
-  return !(e <= largest_shortening) ||
-         !(reach_inside() * (1.0 - e) - 2.0 * grain.deviation >= inner_diameter_ + reserve()) ||
+  return !(e <= ContactReach::largest_shortening) ||
+         !(reach_.inside() * (1.0 - e) - 2.0 * grain.deviation >= reach_.inner_diameter() + reach_.reserve()) ||
          static_cast<double>(grain.n_moved + static_cast<std::int64_t>(grain.moved.size())) >
              largest_moved_share * n_nodes;
 }
 
 /// Notes the places of all nodes again: the frame starts as a mere translation.
-void ContactList::note_all(int g, const LaneState& state) {
+void GrainTracking::note_all(int g, const LaneState& state) {
   TrackedGrain& grain = grains_[g];
   const int n_nodes = layout_.n_nodes(g);
   const std::int64_t stride = layout_.stride(g);
@@ -147,13 +170,13 @@ void ContactList::note_all(int g, const LaneState& state) {
       places[node][c] = place_[at + c * stride];
     }
     bounds.include(places[node]);
-    compare_with_neighbour_bounds(grain, places[node]);
+    grain.compare_with_neighbour_bounds(places[node]);
     moments += places[node] * places[node].transpose();
   }
   // A flat or tiny grain has no full set of moments: its frame then only turns and shears where it can.
   moments += moments_floor * n_nodes * Matrix3::Identity();
   grain.inverse_moments = moments.inverse();
-  grain.grid = GrainGrid(places, bounds, reach_between() / (1.0 - largest_shortening));
+  grain.grid = GrainGrid(places, bounds, reach_.between() / (1.0 - ContactReach::largest_shortening));
   grain.deviation = rounding;
   grain.moved.clear();
   grain.moved_to.clear();
@@ -162,10 +185,10 @@ void ContactList::note_all(int g, const LaneState& state) {
 }
 
 /// Gives the nodes that deviate far the places where they are. False when one has left the grain's bounds.
-bool ContactList::note_moved(int g, const LaneState& state) {
+bool GrainTracking::note_moved(int g, const LaneState& state) {
   TrackedGrain& grain = grains_[g];
   const GrainFrame back = grain.frame.inverse();
-  const Bounds allowed = grain.grid.bounds().widened(bounds_margin_);
+  const Bounds allowed = grain.grid.bounds().widened(reach_.bounds_margin);
   const std::int64_t stride = layout_.stride(g);
   for (const std::int32_t node : grain.moved) {
     const std::int64_t at = layout_.index(g, node, 0);
@@ -178,7 +201,7 @@ bool ContactList::note_moved(int g, const LaneState& state) {
     }
     grain.moved_to.push_back(place(g, node));
     grain.grid.insert(node, grain.moved_to.back());
-    compare_with_neighbour_bounds(grain, grain.moved_to.back());
+    grain.compare_with_neighbour_bounds(grain.moved_to.back());
   }
   grain.n_moved += static_cast<int>(grain.moved.size());
   return true;

@@ -3,8 +3,7 @@
 // times farther in a step than the rest. Were it to count as all do, the list would have to be brought up to date
 // several times as often: these nodes are looked up from where they are, with all of the reach, and have a bound of
 // their own.
-#include "bpm/forces/contact_list.h"
-#include "bpm/forces/node_pairs.h"
+#include "bpm/forces/grain_tracking.h"
 
 #include <algorithm>
 
@@ -29,11 +28,11 @@ std::size_t most_followed(int n_nodes) {
 
 } // namespace
 
-bool ContactList::follows(int grain, std::int32_t node) const {
+bool GrainTracking::follows(int grain, std::int32_t node) const {
   return std::binary_search(grains_[grain].followed.begin(), grains_[grain].followed.end(), node);
 }
 
-void ContactList::note_fast_node(int g, std::int32_t node) {
+void GrainTracking::note_fast_node(int g, std::int32_t node) {
   TrackedGrain& grain = grains_[g];
   if (grain.fast.size() < records_per_node * (most_followed(layout_.n_nodes(g)) + 1)) {
     grain.fast.push_back(node);
@@ -41,7 +40,7 @@ void ContactList::note_fast_node(int g, std::int32_t node) {
 }
 
 /// Chooses the nodes of a grain that are followed until the next update, and finds out where they are.
-void ContactList::follow(int g, const LaneState& state) {
+void GrainTracking::follow(int g, const LaneState& state) {
   TrackedGrain& grain = grains_[g];
   std::sort(grain.fast.begin(), grain.fast.end());
   grain.fast.erase(std::unique(grain.fast.begin(), grain.fast.end()), grain.fast.end());
@@ -69,8 +68,7 @@ void ContactList::follow(int g, const LaneState& state) {
   }
 }
 
-/// Sets what counts as far so that a few nodes in a thousand are followed.
-void ContactList::choose_fast_motion() {
+void GrainTracking::choose_fast_motion() {
   double followed = 0.0, nodes = 0.0;
   for (const int g : layout_.grains()) {
     followed += grains_[g].too_many_fast ? layout_.n_nodes(g) : static_cast<double>(grains_[g].followed.size());
@@ -80,65 +78,16 @@ void ContactList::choose_fast_motion() {
   if (followed > many_followed * nodes) {
     fast_motion_ *= adjustment;
   } else if (followed < few_followed * nodes) {
-    fast_motion_ = std::max(fast_motion_ / adjustment, 0.5 * reserve() / longest_stay);
+    fast_motion_ = std::max(fast_motion_ / adjustment, 0.5 * reach_.reserve() / longest_stay);
   }
 }
 
-/// Distance that followed nodes keep from all that they are not listed with: they were looked up from where they are
-/// with the whole reach, and others may deviate from their places.
-double ContactList::followed_guarantee() const {
+double GrainTracking::followed_guarantee() const {
   double deviation = 0.0;
   for (const TrackedGrain& grain : grains_) {
     deviation = std::max(deviation, grain.deviation);
   }
-  return reach_between() - deviation;
-}
-
-void ContactList::add_followed(ContactPair& pair, const Box& box, const NetworkData& network) {
-  pair.followed.clear();
-  pair.inside() ? add_followed_inside(pair, network) : add_followed_between(pair, box);
-  if (pair.followed.empty()) {
-    return;
-  }
-  remove_bonded(pair, pair.followed, network);
-  sort_pairs(pair.followed, layout_.n_nodes(pair.a));
-  thread_local NodePairs found;
-  found.assign(pair.followed.begin(), pair.followed.end());
-  add_candidates(pair, found, network);
-}
-
-void ContactList::add_followed_inside(ContactPair& pair, const NetworkData& network) const {
-  const TrackedGrain& grain = grains_[pair.a];
-  for (std::size_t k = 0; k < grain.followed.size(); ++k) {
-    add_partners_inside(grain, grain.followed[k], grain.followed_at[k], radius_in(grain.frame), network, pair.followed);
-  }
-}
-
-void ContactList::add_followed_between(ContactPair& pair, const Box& box) const {
-  thread_local std::vector<std::int32_t> nodes;
-  const GrainFrame frame_a = grains_[pair.a].frame, frame_b = second_frame(pair, box);
-  /// Calls add(node, other node) for the followed nodes of one grain and the nodes of the other near them.
-  const auto look_up = [&](int grain, const GrainFrame& frame, int other, const GrainFrame& other_frame,
-                           const auto& add) {
-    if (grains_[grain].followed.empty()) {
-      return;
-    }
-    const GrainFrame to_other = other_frame.inverse().after(frame);
-    const double radius = radius_in(other_frame);
-    const Bounds bounds = grains_[other].grid.bounds().widened(bounds_margin_ + radius);
-    for (std::size_t k = 0; k < grains_[grain].followed.size(); ++k) {
-      const Vector3 x = to_other(grains_[grain].followed_at[k]);
-      if (bounds.contains(x)) {
-        nodes.clear();
-        add_nodes_near(grains_[other].grid, x, radius, nodes);
-        for (const std::int32_t near : nodes) {
-          add(grains_[grain].followed[k], near);
-        }
-      }
-    }
-  };
-  look_up(pair.a, frame_a, pair.b, frame_b, [&](std::int32_t i, std::int32_t j) { pair.followed.push_back({i, j}); });
-  look_up(pair.b, frame_b, pair.a, frame_a, [&](std::int32_t j, std::int32_t i) { pair.followed.push_back({i, j}); });
+  return reach_.between() - deviation;
 }
 
 } // namespace boba

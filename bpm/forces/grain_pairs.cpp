@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which grains may meet: their pairs, and how long no other pair can.
-#include "bpm/forces/contact_list.h"
+#include "bpm/forces/grain_pairs.h"
+
+#include "bpm/forces/grain_neighbours.h"
 
 #include <algorithm>
 #include <compare>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace boba {
@@ -44,18 +46,23 @@ void keep_pairs(std::vector<ContactPair>& pairs, const std::vector<PairKey>& wan
 
 } // namespace
 
-void ContactList::find_neighbours(const Box& box) {
+void GrainPairs::layout_changed() {
+  sides_.assign(layout_.n_grains(), {});
+  pairs_.clear();
+}
+
+void GrainPairs::find(std::vector<TrackedGrain>& grains, const Box& box, bool afresh) {
   const int n_grains = layout_.n_grains();
   std::vector<Bounds> bounds(n_grains);
   for (const int g : layout_.grains()) {
-    TrackedGrain& grain = grains_[g];
-    bounds[g] = grain.grid.bounds().widened(bounds_margin_).mapped(grain.frame).widened(grain.deviation);
+    TrackedGrain& grain = grains[g];
+    bounds[g] = grain.grid.bounds().widened(reach_.bounds_margin).mapped(grain.frame).widened(grain.deviation);
     grain.neighbour_frame = grain.frame;
     grain.neighbour_bounds = bounds[g];
     grain.outgrown = false;
   }
   share_bounds(bounds);
-  const GrainNeighbours neighbours(std::move(bounds), box, reach_between() + neighbour_margin_);
+  const GrainNeighbours neighbours(std::move(bounds), box, reach_.between() + reach_.neighbour_margin);
   std::vector<PairKey> found;
 #pragma omp parallel for schedule(dynamic, 8)
   for (const int g : layout_.grains()) {
@@ -74,7 +81,7 @@ void ContactList::find_neighbours(const Box& box) {
     found.insert(found.end(), of_grain.begin(), of_grain.end());
   }
   std::sort(found.begin(), found.end());
-  if (!built_) {
+  if (afresh) {
     pairs_.clear();
   }
   keep_pairs(pairs_, found);
@@ -84,39 +91,42 @@ void ContactList::find_neighbours(const Box& box) {
     sides_[pair.a].push_back({index, 1.0});
     sides_[pair.b].push_back({index, -1.0});
   }
-  find_ghosts();
   for (ContactPair& pair : pairs_) {
     pair.changed = true;
   }
-  cell_since_neighbours_ = Matrix3::Identity();
+  cell_since_found_ = Matrix3::Identity();
 }
 
-/// Distance that the nodes of grains which are not neighbours keep: they were farther apart than the reach when the
-/// neighbours were found, the cell may have shortened that, and each grain may have moved beyond the cell's motion.
-/// Nothing when a grain has a place that was not in its bounds then: a node that left, while the grain as a whole
-/// stayed.
-double ContactList::neighbour_guarantee(const Box& box) const {
-  const Matrix3& cell = cell_since_neighbours_;
+void GrainPairs::share_bounds(std::vector<Bounds>& bounds) const {
+  std::vector<double> rows;
+  for (const Bounds& of_grain : bounds) {
+    rows.insert(rows.end(), of_grain.low.begin(), of_grain.low.end());
+    rows.insert(rows.end(), of_grain.high.begin(), of_grain.high.end());
+  }
+  distribution_.ranks->share_rows(rows, 6, distribution_.ownership);
+  for (std::size_t g = 0; g < bounds.size(); ++g) {
+    bounds[g].low = Eigen::Map<const Vector3>(&rows[6 * g]);
+    bounds[g].high = Eigen::Map<const Vector3>(&rows[6 * g + 3]);
+  }
+}
+
+double GrainPairs::guarantee(const std::vector<TrackedGrain>& grains, const Box& box) const {
+  const Matrix3& cell = cell_since_found_;
   const GrainFrame with_cell = {cell, box.origin() - cell * box.origin()};
   double farthest = 0.0;
   for (const int g : layout_.grains()) {
-    const TrackedGrain& grain = grains_[g];
+    const TrackedGrain& grain = grains[g];
     if (grain.outgrown) {
       farthest = std::numeric_limits<double>::max();
     }
     const GrainFrame carried = with_cell.after(grain.neighbour_frame);
-    grain.grid.bounds().widened(bounds_margin_).for_each_corner([&](const Vector3& x) {
+    grain.grid.bounds().widened(reach_.bounds_margin).for_each_corner([&](const Vector3& x) {
       farthest = std::max(farthest, (grain.frame(x) - carried(x)).norm() + grain.deviation);
     });
   }
   farthest = distribution_.ranks->largest(farthest);
   const double stretch = 1.0 - (cell - Matrix3::Identity()).norm();
-  return stretch * (reach_between() + neighbour_margin_) - 2.0 * farthest;
-}
-
-/// Notes whether a place was outside the bounds that its grain had when the neighbours were found.
-void ContactList::compare_with_neighbour_bounds(TrackedGrain& grain, const Vector3& place) {
-  grain.outgrown = grain.outgrown || !grain.neighbour_bounds.contains(grain.neighbour_frame(place));
+  return stretch * (reach_.between() + reach_.neighbour_margin) - 2.0 * farthest;
 }
 
 } // namespace boba

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains of other ranks near ours. Their owners follow them; what they know of frames, places and deviations comes here
-// whenever the grains are looked at, so that pairs are searched and kept by the same rules on both sides.
-#include "bpm/forces/contact_list.h"
+#include "bpm/forces/ghost_grains.h"
 
 #include <algorithm>
 #include <cstring>
@@ -34,27 +32,14 @@ Vector3 place_of(const PlaceRecord& record) {
 
 } // namespace
 
-void ContactList::share_bounds(std::vector<Bounds>& bounds) const {
-  std::vector<double> rows;
-  for (const Bounds& of_grain : bounds) {
-    rows.insert(rows.end(), of_grain.low.begin(), of_grain.low.end());
-    rows.insert(rows.end(), of_grain.high.begin(), of_grain.high.end());
-  }
-  distribution_.ranks->share_rows(rows, 6, distribution_.ownership);
-  for (std::size_t g = 0; g < bounds.size(); ++g) {
-    bounds[g].low = Eigen::Map<const Vector3>(&rows[6 * g]);
-    bounds[g].high = Eigen::Map<const Vector3>(&rows[6 * g + 3]);
-  }
-}
-
 /// Finds out which grains of other ranks stand in our pairs, and which of ours other ranks know nothing of yet.
-void ContactList::find_ghosts() {
+void GhostGrains::find(const std::vector<ContactPair>& pairs, std::vector<TrackedGrain>& grains, bool afresh) {
   if (!distribution_.is_distributed()) {
     return;
   }
-  const std::vector<int> before = built_ ? ghosts_ : std::vector<int>{};
+  const std::vector<int> before = afresh ? std::vector<int>{} : ghosts_;
   ghosts_.clear();
-  for (const ContactPair& pair : pairs_) {
+  for (const ContactPair& pair : pairs) {
     for (const int grain : {pair.a, pair.b}) {
       if (!layout_.holds(grain)) {
         ghosts_.push_back(grain);
@@ -65,7 +50,7 @@ void ContactList::find_ghosts() {
   ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end()), ghosts_.end());
   for (const int gone : before) {
     if (!std::binary_search(ghosts_.begin(), ghosts_.end(), gone)) {
-      grains_[gone] = {};
+      grains[gone] = {};
     }
   }
   const Ownership& ownership = distribution_.ownership;
@@ -79,7 +64,7 @@ void ContactList::find_ghosts() {
     }
   }
   const int n_own = static_cast<int>(layout_.grains().size());
-  ghost_forest_ = make_star_forest(n_own, all);
+  forest_ = make_star_forest(n_own, all);
   const std::unique_ptr<StarForest> asking = make_star_forest(n_own, fresh);
   wanted_.assign(n_own, 0);
   for (const int k : asking->wanted()) {
@@ -88,17 +73,17 @@ void ContactList::find_ghosts() {
 }
 
 /// What the other ranks are told of this rank's grains: a record for each, and the places that the records name.
-struct ContactList::GhostMessage {
+struct GhostGrains::Message {
   std::vector<GhostRecord> grains;
   std::vector<PlaceRecord> places;
 };
 
-ContactList::GhostMessage ContactList::message_of_own_grains() const {
-  GhostMessage message;
+GhostGrains::Message GhostGrains::message_of_own_grains(const GrainTracking& tracking) const {
+  Message message;
   std::vector<PlaceRecord>& places = message.places;
   for (std::size_t k = 0; k < layout_.grains().size(); ++k) {
     const int g = layout_.grains()[k];
-    const TrackedGrain& grain = grains_[g];
+    const TrackedGrain& grain = tracking[g];
     message.grains.push_back({grain.frame, grain.grid.bounds(), grain.deviation,
                               static_cast<std::int32_t>(places.size()), static_cast<std::int32_t>(grain.moved.size()),
                               static_cast<std::int32_t>(grain.followed.size()), grain.all_noted ? 1 : 0});
@@ -109,17 +94,17 @@ ContactList::GhostMessage ContactList::message_of_own_grains() const {
       places.push_back(record_of(grain.followed[m], grain.followed_at[m]));
     }
     for (int node = 0; (grain.all_noted || wanted_[k] != 0) && node < layout_.n_nodes(g); ++node) {
-      places.push_back(record_of(node, place(g, node)));
+      places.push_back(record_of(node, tracking.place(g, node)));
     }
   }
   return message;
 }
 
 /// Of the places that the owners have sent records of, those that this rank needs: grain by grain.
-ContactList::GhostMessage ContactList::message_about_ghosts(const GhostMessage& own) const {
-  GhostMessage message;
+GhostGrains::Message GhostGrains::message_about_ghosts(const Message& own) const {
+  Message message;
   message.grains.resize(ghosts_.size());
-  ghost_forest_->copy(sizeof(GhostRecord), own.grains.data(), message.grains.data());
+  forest_->copy(sizeof(GhostRecord), own.grains.data(), message.grains.data());
   std::vector<RootPlace> from;
   for (std::size_t k = 0; k < ghosts_.size(); ++k) {
     const GhostRecord& record = message.grains[k];
@@ -139,8 +124,8 @@ ContactList::GhostMessage ContactList::message_about_ghosts(const GhostMessage& 
 }
 
 /// Takes over what its owner says of one ghost; returns the record of a place behind its last one.
-const PlaceRecord* ContactList::take_ghost(int ghost, const GhostRecord& record, bool all, const PlaceRecord* next) {
-  TrackedGrain& grain = grains_[ghost];
+const PlaceRecord* GhostGrains::take(TrackedGrain& grain, int ghost, const GhostRecord& record, bool all,
+                                     const PlaceRecord* next) const {
   grain.frame = record.frame;
   grain.deviation = record.deviation;
   for (int m = 0; !all && m < record.n_moved; ++m, ++next) {
@@ -161,22 +146,22 @@ const PlaceRecord* ContactList::take_ghost(int ghost, const GhostRecord& record,
       places.push_back(place_of(*next));
       bounds.include(places.back());
     }
-    grain.grid = GrainGrid(places, bounds, reach_between() / (1.0 - largest_shortening));
+    grain.grid = GrainGrid(places, bounds, reach_.between() / (1.0 - ContactReach::largest_shortening));
     grain.all_noted = true;
   }
   return next;
 }
 
 /// Brings frames, deviations and places of the ghosts up to what their owners have just found.
-void ContactList::follow_ghosts() {
+void GhostGrains::follow(GrainTracking& tracking) {
   if (!distribution_.is_distributed()) {
     return;
   }
-  const GhostMessage message = message_about_ghosts(message_of_own_grains());
+  const Message message = message_about_ghosts(message_of_own_grains(tracking));
   const PlaceRecord* next = message.places.data();
   for (std::size_t k = 0; k < ghosts_.size(); ++k) {
     const GhostRecord& record = message.grains[k];
-    next = take_ghost(ghosts_[k], record, record.all_noted != 0 || fresh_[k] != 0, next);
+    next = take(tracking.grains()[ghosts_[k]], ghosts_[k], record, record.all_noted != 0 || fresh_[k] != 0, next);
   }
   std::fill(fresh_.begin(), fresh_.end(), 0);
   std::fill(wanted_.begin(), wanted_.end(), 0);
