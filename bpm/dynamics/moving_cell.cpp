@@ -16,6 +16,12 @@ bool MovingCell::deform(const Matrix3& gradient, const Matrix3& of_positions, do
   return flipped;
 }
 
+void MovingCell::set_height(double height) {
+  Matrix3 h = box_.h();
+  h(2, 2) = height;
+  box_.set_h(h);
+}
+
 void MovingCell::assume_streaming(const Matrix3& gradient) {
   streaming_ = gradient;
   next_streaming_ = gradient;

@@ -26,6 +26,8 @@ public:
   /// is to act on the nodes; the rest moves images. The box is flipped when it leans too far and `may_flip` is true.
   /// Returns whether it was flipped.
   bool deform(const Matrix3& gradient, const Matrix3& of_positions, double dt, bool may_flip);
+  /// The distance of the faces across z, along which the cell is open: what volumes and stresses refer to, d.
+  void set_height(double height);
   /// The nodes' velocities hold this profile already; images move with it. For states that come like that.
   void assume_streaming(const Matrix3& gradient);
   void add_strain(double strain) { strain_ += strain; }

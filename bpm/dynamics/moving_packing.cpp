@@ -11,6 +11,7 @@ MovingPacking::MovingPacking(Packing packing_in, const Material& material_in, co
       layout(packing, options.precision, own_grains(packing, distribution)), state(packing, layout),
       forces(packing, layout, material, options.skin, distribution), cell(packing.box), ends(forces.walls()) {
   cell.add_strain(packing.strain);
+  ends.set_faces(packing.box, packing.walls);
   if (!ranks().is_root()) { // rank 0 alone writes
     for (std::vector<Vector3>* big : {&packing.position, &packing.velocity}) {
       std::vector<Vector3>().swap(*big);

@@ -12,6 +12,28 @@ void SpecimenEnds::set_walls(const std::array<double, 2>& z, double velocity) {
   walls_.set({{z[0] * up, up, velocity * up}, {z[1] * up, -up, -velocity * up}});
 }
 
+void SpecimenEnds::set_faces(const Box& box, const std::array<bool, 3>& across) {
+  std::vector<Wall> walls;
+  for (const int axis : {2, 0, 1}) { // the ends first
+    if (across[axis]) {
+      const Vector3 inwards = Vector3::Unit(axis);
+      walls.push_back({box.origin(), inwards, Vector3::Zero()});
+      walls.push_back({box.origin() + box.lengths()[axis] * inwards, -inwards, Vector3::Zero()});
+    }
+  }
+  if (!walls.empty()) {
+    walls_.set(std::move(walls));
+    gap_ = across[2] ? box.lengths()[2] : 0.0;
+  }
+}
+
+void SpecimenEnds::drive_walls(double velocity) {
+  std::vector<Wall> walls(walls_.begin(), walls_.end());
+  walls[0].velocity = velocity * Vector3::UnitZ();
+  walls[1].velocity = -velocity * Vector3::UnitZ();
+  walls_.set(std::move(walls));
+}
+
 void SpecimenEnds::set_clamps(std::vector<Clamp> clamps, double velocity) {
   clamps_ = std::move(clamps);
   clamps_[0].velocity = velocity * Vector3::UnitZ();
@@ -29,7 +51,7 @@ std::array<double, 2> SpecimenEnds::forces() const {
   if (clamps_.size() == 2) {
     return {-clamps_[0].force[2], clamps_[1].force[2]};
   }
-  if (walls_.size() == 2) {
+  if (has_walls()) {
     return {walls_[0].force, walls_[1].force};
   }
   return {0.0, 0.0};

@@ -11,13 +11,21 @@ namespace boba {
 
 struct MovingPacking;
 
-/// What holds a specimen at its lower and its upper end: two walls or two clamps, which move along z.
+/// What holds a specimen or a packing at its lower and its upper end: two walls or two clamps, which move along z; and
+/// walls at its sides, which stand still.
 class SpecimenEnds {
 public:
   explicit SpecimenEnds(Walls& walls) : walls_(walls) {}
 
+  /// Walls at rest at the faces of the cell across some axes; those across z are the ends. None where no axis has any.
+  void set_faces(const Box& box, const std::array<bool, 3>& across);
   /// Two walls across z (lower, upper; d) that move towards each other with `velocity` each (d/tau).
   void set_walls(const std::array<double, 2>& z, double velocity);
+  /// The walls that are the ends move towards each other, from where they are, with `velocity` each (d/tau).
+  void drive_walls(double velocity);
+  /// True when two walls are the ends; their distance, d.
+  bool has_walls() const { return walls_.size() >= 2; }
+  double wall_distance() const { return walls_[1].point.z() - walls_[0].point.z(); }
   /// Two clamps (lower, upper) that move towards each other with `velocity` each (d/tau).
   void set_clamps(std::vector<Clamp> clamps, double velocity);
   /// Moves the walls on by a time dt; clamped nodes move with their velocities.

@@ -35,6 +35,11 @@ void add_to_momentum(MovingPacking& moving, const Vector3& difference) {
   }
 }
 
+/// Bonds and contacts cannot change the momentum; walls, clamps and gravity can.
+bool is_conserved(const MovingPacking& moving) {
+  return moving.ends.are_free() && moving.material.gravity == std::array<double, 3>{};
+}
+
 } // namespace
 
 void note_momentum(MovingPacking& moving, const Matrix3& streaming) {
@@ -46,7 +51,7 @@ void note_motion_along_gradient(MovingPacking& moving) {
 }
 
 void restore_momentum(MovingPacking& moving) {
-  if (moving.ends.are_free()) {
+  if (is_conserved(moving)) {
     const Vector3 expected = moving.noted_momentum - moving.momentum_along_gradient;
     add_to_momentum(moving, expected - peculiar_velocity_sum(moving, moving.cell.streaming()));
   }
@@ -54,7 +59,7 @@ void restore_momentum(MovingPacking& moving) {
 
 void restore_momentum_without_streaming(MovingPacking& moving) {
   moving.momentum_along_gradient.setZero();
-  if (moving.ends.are_free()) {
+  if (is_conserved(moving)) {
     add_to_momentum(moving, moving.noted_momentum - peculiar_velocity_sum(moving, Matrix3::Zero()));
   }
 }

@@ -16,8 +16,8 @@ void note_momentum(MovingPacking& moving, const Matrix3& streaming);
 void note_motion_along_gradient(MovingPacking& moving);
 
 /// Takes what rounding has changed of that sum since it was noted from all nodes alike; motion along the streaming's
-/// gradient has its part in the sum. Bonds and contacts cannot change it; walls and clamps can, and then nothing is
-/// done. Collective.
+/// gradient has its part in the sum. Bonds and contacts cannot change it; walls, clamps and gravity can, and then
+/// nothing is done. Collective.
 void restore_momentum(MovingPacking& moving);
 
 /// When the last of a streaming profile is gone: gives the packing the momentum that it had before. Motion along the

@@ -68,7 +68,23 @@ private:
         field_.contacts_->add(grain, f + lane, with_sums_ ? &field_.sums_.contacts[grain] : nullptr);
       }
     }
+    if (field_.material_.gravity != std::array<double, 3>{}) {
+      add_gravity(block, f);
+    }
     field_.walls_.add(field_.contact_law(), block, state_, f, with_sums_, field_.sums_);
+  }
+
+  /// m g on every node.
+  template <class Real> void add_gravity(const Block& block, Real* f) const {
+    for (int c = 0; c < 3; ++c) {
+      const auto weight = static_cast<Real>(field_.material_.node_mass * field_.material_.gravity[c]);
+      for (std::int64_t node = 0; node < block.n_nodes; ++node) {
+        Real* of_node = f + (3 * node + c) * block.n_lanes;
+        for (int lane = 0; lane < block.n_lanes; ++lane) {
+          of_node[lane] += block.grain[lane] >= 0 ? weight : Real{0};
+        }
+      }
+    }
   }
 
   ForceField& field_;

@@ -188,7 +188,12 @@ void archive_grains(Archive& archive, Packing& packing) {
 
 void archive_packing(Archive& archive, Packing& packing) {
   archive_templates(archive, packing.templates);
-  archive.inside("cell", [&] { archive_cell(archive, packing.box); });
+  archive.inside("cell", [&] {
+    archive_cell(archive, packing.box);
+    archive.field("walls_x", packing.walls[0]);
+    archive.field("walls_y", packing.walls[1]);
+    archive.field("walls_z", packing.walls[2]);
+  });
   archive.inside("grains", [&] { archive_grains(archive, packing); });
   archive.field("id", packing.id);
   archive.field("position", packing.position);

@@ -5,6 +5,7 @@
 #include "bpm/laws/contact.h"
 #include "bpm/laws/parameter.h"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct Material {
   double diameter = 1.0;                         ///< contact distance of two nodes, d
   std::optional<double> contact_diameter;        ///< the same of nodes of different grains; absent: `diameter`
   std::string contact = ContactLaw::name;        ///< name of the contact law, see forces/contact_laws.h
+  std::array<double, 3> gravity{};               ///< acceleration of every node, d/tau^2
   std::vector<double> contact_parameters;        ///< values of the parameters of that law which are not named above
 };
 

@@ -8,6 +8,7 @@
 #include "bpm/packing/snapshot.h"
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -43,6 +44,7 @@ struct Packing {
   std::vector<Vector3> position; ///< d
   std::vector<Vector3> velocity; ///< d/tau
   double strain = 0.0;           ///< shear strain until now, of the run that this one continues
+  std::array<bool, 3> walls{};   ///< rigid walls stand at the cell's faces across these axes, along which it is open
 
   int n_grains() const { return static_cast<int>(grains.size()); }
   const GrainTemplate& template_of(int grain) const { return *templates[grains[grain].template_index]; }

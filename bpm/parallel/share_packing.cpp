@@ -47,6 +47,7 @@ void share_packing(Packing& packing, const Ranks& ranks) {
   ranks.broadcast(packing.position);
   ranks.broadcast(packing.velocity);
   ranks.broadcast(packing.strain);
+  ranks.broadcast(packing.walls);
 }
 
 } // namespace boba

@@ -293,6 +293,8 @@ Scene read_tree(const std::string& text, const std::filesystem::path& path, cons
   if (const auto diameter = material.maybe_real(contact_diameter_parameter.name)) {
     scene.material.contact_diameter = *diameter; // absent where the scene says nothing: one law for all contacts
   }
+  const std::vector<double> gravity = material.vector("gravity", {0.0, 0.0, 0.0});
+  std::copy(gravity.begin(), gravity.end(), scene.material.gravity.begin());
   read_contact_law(material, scene.material);
   read_templates(tables, scene, must_exist);
   read_measures(tables, scene);

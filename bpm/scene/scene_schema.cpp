@@ -122,11 +122,18 @@ std::vector<SceneKey> contact_law_keys() {
                 parameters);
 }
 
+SceneKey gravity_key() {
+  SceneKey key = real_key("gravity", "d/tau^2", -0.1, 0.1, "[0, 0, 0]",
+                          "acceleration of every node; only along axes along which the cell is open");
+  key.type = SceneKey::Type::vector3;
+  return key;
+}
+
 std::vector<SceneSection> material_sections() {
   return {
       section("material", "Constants that all grains share.",
               joined({parameter_key(BondLaw::k_parameter), parameter_key(BondLaw::gamma_parameter),
-                      parameter_key(contact_diameter_parameter)},
+                      parameter_key(contact_diameter_parameter), gravity_key()},
                      contact_law_keys())),
       repeated("template",
                "An undeformed grain. Built once, then read from the cache (`~/.cache/boba`, or BOBA_CACHE_DIR).",

@@ -69,6 +69,13 @@ StageContext stage_context(const Scene& scene, const Packing& packing, std::opti
 std::vector<PreparedStage> prepare_stages(const Scene& scene, const StageContext& context) {
   const std::array<bool, 3> periodic = context.packing.box.periodic();
   const bool is_open = !std::ranges::all_of(periodic, [](bool along) { return along; });
+  for (int axis = 0; axis < 3; ++axis) {
+    if (periodic[axis] && scene.material.gravity[axis] != 0.0) {
+      throw InputError(fmt::format("{}: material.gravity[{}] = {:g}: the cell is periodic along {}, where grains would "
+                                   "fall without end; allowed there: 0",
+                                   scene.path.string(), axis, scene.material.gravity[axis], "xyz"[axis]));
+    }
+  }
   std::vector<PreparedStage> prepared;
   for (const SceneStage& stage : scene.stages) {
     if (is_open && stage.entry->moves_cell()) { // a packing from files: no key of the scene tells

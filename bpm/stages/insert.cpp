@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/stages/insert.h"
 
+#include "bpm/laws/hertz.h"
 #include "bpm/packing/node_insertion.h"
 #include "bpm/toml/schema.h"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <limits>
 #include <new>
 #include <stdexcept>
 
@@ -23,12 +26,19 @@ SceneSection InsertStart::section() {
        choice_key("arrangement", arrangement_names(), "\"random\"",
                   "where the grains are placed: fcc takes 4 n^3 of them, bcc 2 n^3, sc n^3; hcp numbers that make a "
                   "cell near a cube; others are refused with the next that fit"),
-       boolean_key("rotate", "true", "turn every grain at random")}};
+       boolean_key("rotate", "true", "turn every grain at random"),
+       choice_key("walls", {"none", "z", "xyz"}, "\"none\"",
+                  "rigid walls at the faces of the cell across z, or all round, along which the cell is then open; it "
+                  "grows there to hold the grains whole")}};
 }
 
 InsertStart::InsertStart(const SceneTable& table, const StartFiles&)
     : packing_fraction_(table.real("packing_fraction", 0.4)), may_lower_(!table.has("packing_fraction")),
-      rotate_(table.boolean("rotate", true)), arrangement_(arrangement_named(table.text("arrangement", "random"))) {}
+      rotate_(table.boolean("rotate", true)), arrangement_(arrangement_named(table.text("arrangement", "random"))) {
+  const std::string walls = table.text("walls", "none");
+  walls_ = {walls == "xyz", walls == "xyz", walls != "none"};
+  has_walls_ = walls_[2];
+}
 
 void InsertStart::check(const SceneTable& table, const SceneGrains& grains) const {
   for (const SceneTemplate& t : grains.templates) {
@@ -85,6 +95,27 @@ Packing insert_where_possible(Insertion insertion, bool may_lower, const Narrato
   }
 }
 
+/// Opens the cell along some axes: it then ends, with walls, where the outermost nodes begin to feel them.
+Packing between_walls(Packing packing, const std::array<bool, 3>& walls, double reach) {
+  Vector3 low = packing.box.origin(), high = low + packing.box.lengths();
+  std::array<bool, 3> periodic = packing.box.periodic();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!walls[axis]) {
+      continue;
+    }
+    periodic[axis] = false;
+    low[axis] = std::numeric_limits<double>::infinity();
+    high[axis] = -low[axis];
+    for (const Vector3& x : packing.position) {
+      low[axis] = std::min(low[axis], x[axis] - reach);
+      high[axis] = std::max(high[axis], x[axis] + reach);
+    }
+  }
+  packing.box = Box(low, high - low, Vector3::Zero(), periodic);
+  packing.walls = walls;
+  return packing;
+}
+
 } // namespace
 
 Packing InsertStart::make(const StartContext& context) const {
@@ -98,8 +129,15 @@ Packing InsertStart::make(const StartContext& context) const {
   insertion.rotate = rotate_;
   insertion.seed = context.seed;
   insertion.diameter = between_grains(context.material).diameter;
-  return at_random ? insert_where_possible(std::move(insertion), may_lower_, context.narrate)
-                   : insert_on_lattice(insertion, arrangement_);
+  if (has_walls_ && context.material.contact == HertzLaw::name) {
+    throw std::invalid_argument(
+        "insert: walls have no meaning with material.hertz_modulus: Hertz's law is for contacts "
+        "of two spheres");
+  }
+  const double reach = 0.5 * insertion.diameter;
+  Packing packing = at_random ? insert_where_possible(std::move(insertion), may_lower_, context.narrate)
+                              : insert_on_lattice(insertion, arrangement_);
+  return has_walls_ ? between_walls(std::move(packing), walls_, reach) : packing;
 }
 
 } // namespace boba

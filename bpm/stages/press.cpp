@@ -14,11 +14,17 @@ namespace boba {
 
 void PressDriver::begin(Stepper& stepper) {
   dt_ = stepper.options().dt;
+  faces_are_walls_ = stepper.moving().packing.walls[2];
   stage_.ends == PressStage::Ends::walls ? begin_walls(stepper) : begin_clamps(stepper);
   steps_.begin(stage_.strain * height_ / (2.0 * std::abs(stage_.velocity)), dt_);
 }
 
 void PressDriver::begin_walls(Stepper& stepper) {
+  if (stepper.ends().has_walls()) {
+    stepper.ends().drive_walls(stage_.velocity);
+    height_ = stepper.ends().wall_distance();
+    return;
+  }
   const std::array<double, 2> z = extent_z(stepper.moving());
   const double reach = 0.5 * stepper.contact_range(); // where a wall begins to feel a node
   stepper.ends().set_walls({z[0] - reach, z[1] + reach}, stage_.velocity);
@@ -47,6 +53,9 @@ CellRates PressDriver::update(Stepper& stepper) {
   steps_.count();
   stepper.ends().advance(dt_);
   stepper.ends().set_gap(height_ - 2.0 * moved());
+  if (faces_are_walls_) {
+    stepper.moving().cell.set_height(height_ - 2.0 * moved());
+  }
   return {};
 }
 
@@ -66,6 +75,7 @@ StageProgress PressDriver::progress(const Stepper&) const {
 void PressDriver::archive(Archive& archive) {
   archive.field("height", height_);
   archive.field("dt", dt_);
+  archive.field("faces_are_walls", faces_are_walls_);
   archive.object("steps", steps_);
 }
 
@@ -74,10 +84,13 @@ SceneSection PressEntry::section() {
       "stage",
       "press",
       true,
-      "Squeezes a specimen along z between two walls or two clamped ends.",
-      {required(above_key("strain", "", 0.0, 0.9, "", "displacement of both ends together over the specimen's height")),
+      "Squeezes a specimen, or a packing that was placed between walls, along z between two walls or two clamped ends. "
+      "Walls that stand already, of `insert` or of a stage before, move on from where they are.",
+      {required(above_key("strain", "", 0.0, 0.9, "",
+                          "displacement of both ends together over their distance at the start")),
        choice_key("ends", {"walls", "clamps"}, "\"walls\"", "rigid walls, or end layers that move rigidly"),
-       real_key("velocity", "d/tau", -0.1, 0.1, "1e-3", "of each end, not 0; negative pulls (clamps only)"),
+       real_key("velocity", "d/tau", -0.1, 0.1, "1e-3",
+                "of each end, not 0; negative pulls clamps, or moves walls back"),
        above_key("clamp_thickness", "d", 0.0, 1e3, "2", "nodes within this distance of an end are clamped")}};
 }
 
@@ -88,9 +101,6 @@ PressEntry::PressEntry(const SceneTable& table) {
   parameters_.clamp_thickness = table.real("clamp_thickness", parameters_.clamp_thickness);
   if (parameters_.velocity == 0.0) {
     table.fail("velocity", "must not be 0");
-  }
-  if (parameters_.ends == PressStage::Ends::walls && parameters_.velocity < 0.0) {
-    table.fail("velocity", "must be positive: walls can only push (ends = \"clamps\" can pull)");
   }
   if (parameters_.ends == PressStage::Ends::walls && table.has("clamp_thickness")) {
     table.fail("clamp_thickness", "needs ends = \"clamps\"");

@@ -6,13 +6,14 @@
 
 namespace boba {
 
-/// Squeezes a specimen along z between two rigid walls or two clamped ends (which move towards each other with
-/// `velocity` each, symmetrically), until the nominal strain is reached.
+/// Squeezes a specimen or a packing along z between two rigid walls or two clamped ends (which move towards each other
+/// with `velocity` each, symmetrically), until the nominal strain is reached. Walls that stand already move on from
+/// where they are.
 struct PressStage {
   enum class Ends { walls, clamps };
   Ends ends = Ends::walls;
-  double velocity = 1e-3; ///< of each end, d/tau; negative pulls (clamps)
-  double strain = 0.0;    ///< nominal strain: displacement of both ends together over the specimen's initial height
+  double velocity = 1e-3;       ///< of each end, d/tau; negative pulls (clamps), or moves the walls back
+  double strain = 0.0;          ///< nominal strain: displacement of both ends together over their distance at the start
   double clamp_thickness = 2.0; ///< d; nodes within this distance of the specimen's ends move rigidly
 };
 
@@ -38,6 +39,7 @@ private:
   PressStage stage_;
   double height_ = 0.0; ///< between the ends at the start, d
   double dt_ = 0.0;
+  bool faces_are_walls_ = false; ///< the cell ends at the walls
 };
 
 /// A [[stage]] with `type = "press"`.

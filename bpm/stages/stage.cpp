@@ -15,7 +15,8 @@ void require_periodic_cell(const SceneTable& table, const StageSurroundings& sur
 
 void require_open_cell(const SceneTable& table, const StageSurroundings& surroundings) {
   if (!surroundings.cell_is_open) {
-    table.fail("type", "needs an open cell: begin with a \"specimen\" stage");
+    table.fail("type",
+               "needs an open cell: begin with a \"specimen\" stage, or with walls = \"z\" or \"xyz\" of insert");
   }
 }
 

@@ -70,7 +70,8 @@ TEST(AllowedValues, AtTheEndsOfTheirRangesHaveAnAnswer) {
           const ProgramResult ran =
               limited({"run", "scene.toml", "--quiet", "--wall-time", "0.1", "--output", "out"}, folder);
           EXPECT_EQ(ran.signal, 0) << where << ran.err;
-          EXPECT_TRUE(ran.exit_code == 0 || ran.exit_code == 1 || ran.exit_code == 75) << where << ran.err;
+          // 2 too: how far a cell can be strained is known when the stage begins.
+          EXPECT_TRUE(ran.exit_code >= 0 && (ran.exit_code <= 2 || ran.exit_code == 75)) << where << ran.err;
         }
       }
     }

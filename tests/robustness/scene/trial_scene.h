@@ -62,12 +62,24 @@ private:
       if (key_ != "radius") { // a sphere takes one of them
         needed["nodes"] = "60";
       }
+      const std::map<std::string, std::string> shape_of_key = {{"height", "\"cylinder\""},
+                                                               {"exponent", "\"superellipsoid\""},
+                                                               {"exponent_z", "\"superellipsoid\""},
+                                                               {"rounding", "\"polyhedron\""}};
+      if (const auto shape = shape_of_key.find(key_); shape != shape_of_key.end()) {
+        needed["shape"] = shape->second;
+      }
       return needed;
     }
     if (path == "species") {
       std::map<std::string, std::string> needed = {{"count", "2"}, {"template", "\"t\""}};
       if (key_ != "poisson") {
         needed["alpha"] = "2.0";
+      }
+      if (key_ == "yield_hardening") {
+        needed["yield_strain"] = "0.1";
+      } else if (key_ == "break_scatter") {
+        needed["break_strain"] = "0.2";
       }
       return needed;
     }

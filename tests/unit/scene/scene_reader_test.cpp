@@ -251,7 +251,7 @@ TEST(SceneReader, SpecimenNeedsOneGrainAndAnOpenCell) {
   EXPECT_NE(dynamic_cast<const SpecimenStart*>(read(scene).start.get()), nullptr);
   EXPECT_NE(message_of(scene, {"species.0.count=2"}).find("count = 1"), std::string::npos);
   EXPECT_NE(message_of(scene, {"template.0.shape=periodic_box"}).find("open cell"), std::string::npos);
-  EXPECT_NE(message_of(scene, {"stage.1.ends=walls"}).find("only push"), std::string::npos);
+  EXPECT_NE(message_of(scene, {"stage.1.velocity=0"}).find("must not be 0"), std::string::npos);
 }
 
 TEST(SceneReader, HertzHasNoWallsAndNoClamps) {
