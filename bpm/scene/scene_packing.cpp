@@ -4,6 +4,7 @@
 #include "bpm/forces/contact_laws.h"
 #include "bpm/grain/template_cache.h"
 #include "bpm/io/input_error.h"
+#include "bpm/scene/read_sizes.h"
 #include "bpm/scene/scene_size.h"
 
 #include <algorithm>
@@ -45,7 +46,13 @@ std::vector<Grain> grains_of(const Scene& scene, const PoissonTable& table) {
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: species.{}: {}", scene.path.string(), s, error.what()));
     }
-    grains.insert(grains.end(), static_cast<std::size_t>(species.count), grain);
+    if (species.sizes.empty()) {
+      grains.insert(grains.end(), static_cast<std::size_t>(species.count), grain);
+    }
+    for (const GrainsOfSize& size : species.sizes) {
+      grain.template_index = size.template_index;
+      grains.insert(grains.end(), static_cast<std::size_t>(size.count), grain);
+    }
   }
   return grains;
 }
@@ -91,6 +98,11 @@ Packing make_start(const Scene& scene, const PoissonTable& table, const Narrator
   StartContext context;
   context.grains = grains_of(scene, table);
   context.templates = build_templates(scene, narrate);
+  for (const SceneSpecies& species : scene.species) {
+    if (!species.sizes.empty()) {
+      narrate(fmt::format("species \"{}\": {}", species.name, realised_sizes(species, context.templates)));
+    }
+  }
   context.material = scene.material;
   context.seed = scene.seed;
   context.alpha = [&](const AlphaChoice& choice) { return resolve_alpha(choice, scene.material, table); };

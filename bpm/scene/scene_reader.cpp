@@ -4,6 +4,7 @@
 #include "bpm/laws/hertz.h"
 #include "bpm/parallel/usable_cores.h"
 #include "bpm/scene/override_text.h"
+#include "bpm/scene/read_sizes.h"
 #include "bpm/scene/read_template.h"
 #include "bpm/scene/scene.h"
 #include "bpm/scene/scene_schema.h"
@@ -216,8 +217,10 @@ void read_species(const SceneTables& tables, Scene& scene) {
       table.fail(species.breaking.is_possible() ? "break_strain" : "yield_strain",
                  "is not for a periodic_box: bonds across the cell's boundary neither break nor yield");
     }
+    read_sizes(table, scene, species);
     scene.species.push_back(species);
   }
+  drop_replaced_templates(scene);
 }
 
 /// A copy that rests begins with whole bonds.

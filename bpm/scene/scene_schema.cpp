@@ -5,6 +5,7 @@
 #include "bpm/forces/contact_laws.h"
 #include "bpm/grain/shapes/convex_polyhedron.h"
 #include "bpm/grain/shapes/shape.h"
+#include "bpm/scene/read_sizes.h"
 #include "bpm/stages/stage_registry.h"
 #include "bpm/stages/start_registry.h"
 
@@ -170,6 +171,11 @@ std::vector<SceneSection> material_sections() {
                        text_key("template", "the only one", "name of a [[template]]"),
                        required(integer_key("count", 1.0, most_nodes, "", "number of grains"))},
                       joined(alpha_keys(true), bond_keys()))),
+      section("species.size",
+              "Grains of several sizes, inside a `[[species]]`: `size = { distribution = \"normal\", spread = 0.1 }`. "
+              "The template's own size is 1. Grains are dealt out as near to the shares as whole numbers allow; what "
+              "came of it is told. Rules: docs/how-to/shapes.md.",
+              size_keys()),
       start_section(),
   };
 }

@@ -39,7 +39,10 @@ SceneSize expected_size(const Scene& scene) {
   for (const SceneSpecies& species : scene.species) {
     const double nodes = expected_nodes(scene.templates[species.template_index].spec);
     const auto count = static_cast<double>(species.count);
-    size.nodes += count * nodes;
+    size.nodes += species.sizes.empty() ? count * nodes : 0.0;
+    for (const GrainsOfSize& grains : species.sizes) {
+      size.nodes += static_cast<double>(grains.count) * expected_nodes(scene.templates[grains.template_index].spec);
+    }
     of_grains += count * (only_single_nodes ? bytes_per_single_node : bytes_per_grain);
   }
   size.bytes = of_grains + size.nodes * bytes_per_node + size.template_nodes * bytes_per_template_node;

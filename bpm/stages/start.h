@@ -42,10 +42,17 @@ struct SceneTemplate {
   TemplateSpec spec;
 };
 
+/// Those of a species that have one size.
+struct GrainsOfSize {
+  int template_index = 0;
+  std::int64_t count = 0;
+};
+
 struct SceneSpecies {
   std::string name;
   int template_index = 0;
-  std::int64_t count = 0;
+  std::int64_t count = 0;          ///< of all sizes together
+  std::vector<GrainsOfSize> sizes; ///< empty: every grain is made from `template_index`
   AlphaChoice material;
   Breaking breaking; ///< but for the seed
   Yielding yielding;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <iterator>
 #include <set>
 
 namespace boba {
@@ -37,12 +38,17 @@ std::optional<SceneValue> checked_choice(const SceneKey& key, const TomlNode& no
   return known ? std::optional<SceneValue>(node.text) : std::nullopt;
 }
 
-std::optional<std::vector<double>> three_numbers(const SceneKey& key, const TomlNode& node) {
+/// The numbers of a list of `fewest` to `most`.
+std::optional<std::vector<double>> numbers(const SceneKey& key, const TomlNode& node, std::size_t fewest,
+                                           std::size_t most) {
   const auto good = [&key](const TomlNode& item) { return is_number(item) && in_range(key, number(item)); };
-  if (node.kind != Kind::array || node.items.size() != 3 || !std::all_of(node.items.begin(), node.items.end(), good)) {
+  if (node.kind != Kind::array || node.items.size() < fewest || node.items.size() > most ||
+      !std::all_of(node.items.begin(), node.items.end(), good)) {
     return std::nullopt;
   }
-  return std::vector<double>{number(node.items[0]), number(node.items[1]), number(node.items[2])};
+  std::vector<double> all;
+  std::transform(node.items.begin(), node.items.end(), std::back_inserter(all), number);
+  return all;
 }
 
 /// The value if the key allows it.
@@ -62,14 +68,14 @@ std::optional<SceneValue> checked(const SceneKey& key, const TomlNode& node) {
   case Type::choice:
     return checked_choice(key, node);
   case Type::vector3:
-    return three_numbers(key, node);
+    return numbers(key, node, 3, 3);
   case Type::vectors: {
     if (node.kind != Kind::array || node.items.size() < key.fewest || node.items.size() > key.most) {
       return std::nullopt;
     }
     std::vector<double> all;
     for (const TomlNode& item : node.items) {
-      const std::optional<std::vector<double>> row = three_numbers(key, item);
+      const std::optional<std::vector<double>> row = numbers(key, item, 3, 3);
       if (!row) {
         return std::nullopt;
       }
@@ -77,6 +83,8 @@ std::optional<SceneValue> checked(const SceneKey& key, const TomlNode& node) {
     }
     return all;
   }
+  case Type::numbers:
+    return numbers(key, node, key.fewest, key.most);
   }
   return std::nullopt;
 }
@@ -100,6 +108,13 @@ std::vector<std::string> inner_tables(const SceneSchema& schema, const std::stri
     }
   }
   return {names.begin(), names.end()};
+}
+
+/// A table in each entry of a repeated one, like [species.size].
+bool is_inside_entries(const SceneSchema& schema, const SceneSection& section) {
+  return std::any_of(schema.begin(), schema.end(), [&](const SceneSection& outer) {
+    return outer.repeated && section.path.starts_with(outer.path + ".");
+  });
 }
 
 const TomlNode* node_at(const TomlNode& root, const std::string& path) {
@@ -145,7 +160,7 @@ SceneTable::SceneTable(const SceneSchema& schema, const SceneSection& section, s
   if (node->kind != Kind::table) {
     throw InputError(fmt::format("{}: {} = {}: must be a table, [{}]", node->place, name_, node->shown, section.path));
   }
-  std::vector<std::string> inner = section.repeated ? std::vector<std::string>() : inner_tables(schema, section.path);
+  std::vector<std::string> inner = inner_tables(schema, section.path);
   for (const auto& [key_name, value] : node->members) {
     const SceneKey* key = section.find(key_name);
     const bool is_type = !section.kind.empty() && key_name == "type";
@@ -171,6 +186,28 @@ SceneTable::SceneTable(const SceneSchema& schema, const SceneSection& section, s
       fail(key.name, "is missing; it must be " + key.allowed());
     }
   }
+  if (section.repeated) {
+    read_inner(schema, file);
+  }
+}
+
+void SceneTable::read_inner(const SceneSchema& schema, const std::string& file) {
+  for (const SceneSection& section : schema) {
+    if (!is_inside_entries(schema, section) || !section.path.starts_with(section_->path + ".")) {
+      continue;
+    }
+    const std::string own = section.path.substr(section_->path.size() + 1);
+    if (const TomlNode* node = node_->find(own)) {
+      inner_.emplace_back(schema, section, dotted(name_, own), node, file);
+    }
+  }
+}
+
+const SceneTable* SceneTable::inner(const std::string& name) const {
+  const std::string wanted = dotted(name_, name);
+  const auto at =
+      std::find_if(inner_.begin(), inner_.end(), [&](const SceneTable& table) { return table.name() == wanted; });
+  return at == inner_.end() ? nullptr : &*at;
 }
 
 void SceneTable::fail(const std::string& key, const std::string& message) const {
@@ -183,8 +220,8 @@ void SceneTable::fail(const std::string& key, const std::string& message) const 
 
 SceneTables::SceneTables(const SceneSchema& schema, TomlNode tree, const std::string& file) : root(std::move(tree)) {
   for (const SceneSection& section : schema) {
-    if (tables.contains(section.path)) {
-      continue; // another `type` of a repeated table, handled with the first
+    if (tables.contains(section.path) || is_inside_entries(schema, section)) {
+      continue; // another `type` of a repeated table, handled with the first; or read by the entry that holds it
     }
     std::vector<SceneTable>& made = tables[section.path];
     const TomlNode* node = section.path.empty() ? &root : node_at(root, section.path);

@@ -36,6 +36,9 @@ public:
   std::optional<std::int64_t> maybe_integer(const std::string& key) const { return maybe<std::int64_t>(key); }
   std::optional<std::string> maybe_text(const std::string& key) const { return maybe<std::string>(key); }
 
+  /// A table inside an entry of a repeated one ("size" of a species); nullptr where the file has none.
+  const SceneTable* inner(const std::string& name) const;
+
   const std::string& name() const { return name_; }
   const std::string& kind() const { return section_->kind; }
   /// Stops with "place: table.key = value: message". Without the key in the file: the table's place.
@@ -50,11 +53,14 @@ private:
     return maybe<T>(key).value_or(fallback);
   }
 
+  void read_inner(const SceneSchema& schema, const std::string& file);
+
   const SceneSection* section_;
   std::string name_;
   const TomlNode* node_;
   std::string file_;
   std::map<std::string, SceneValue> values_;
+  std::vector<SceneTable> inner_;
 };
 
 /// All tables of a scene, checked.

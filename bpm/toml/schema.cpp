@@ -53,6 +53,8 @@ std::string SceneKey::allowed() const {
     return "three numbers in brackets, each" + range_text(*this);
   case Type::vectors:
     return fmt::format("a list of {} to {} points [x, y, z], each number", fewest, most) + range_text(*this);
+  case Type::numbers:
+    return fmt::format("a list of {} to {} numbers, each", fewest, most) + range_text(*this);
   }
   return "";
 }
@@ -107,6 +109,13 @@ SceneKey vectors_key(std::string name, std::string unit, double lowest, double h
   key.type = SceneKey::Type::vectors;
   key.fewest = fewest;
   key.most = most;
+  return key;
+}
+
+SceneKey numbers_key(std::string name, std::string unit, double lowest, double highest, std::size_t fewest,
+                     std::size_t most, std::string doc) {
+  SceneKey key = vectors_key(std::move(name), std::move(unit), lowest, highest, fewest, most, std::move(doc));
+  key.type = SceneKey::Type::numbers;
   return key;
 }
 

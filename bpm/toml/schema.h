@@ -15,7 +15,7 @@ using SceneValue = std::variant<bool, std::int64_t, double, std::string, std::ve
 
 /// What a key of a scene may hold.
 struct SceneKey {
-  enum class Type { boolean, integer, real, text, choice, vector3, vectors };
+  enum class Type { boolean, integer, real, text, choice, vector3, vectors, numbers };
 
   std::string name;
   Type type = Type::real;
@@ -48,6 +48,9 @@ SceneKey vector_key(std::string name, std::string unit, double lowest, double hi
 /// A list of as many vectors of three numbers as `fewest` to `most`; read as one vector with all numbers in a row.
 SceneKey vectors_key(std::string name, std::string unit, double lowest, double highest, std::size_t fewest,
                      std::size_t most, std::string doc);
+/// A list of as many numbers as `fewest` to `most`.
+SceneKey numbers_key(std::string name, std::string unit, double lowest, double highest, std::size_t fewest,
+                     std::size_t most, std::string doc);
 SceneKey required(SceneKey key);
 /// The keys of both, in order.
 std::vector<SceneKey> joined(std::vector<SceneKey> first, const std::vector<SceneKey>& second);
@@ -56,7 +59,7 @@ SceneKey or_text(SceneKey key, std::vector<std::string> texts);
 
 /// The keys of one table of a scene.
 struct SceneSection {
-  std::string path;      ///< "run", "output.table", "stage"; "" for the top of the file
+  std::string path;      ///< "run", "output.table", "stage", "species.size" (in each entry); "" for the top of the file
   std::string kind;      ///< value of `type` that selects this one among the tables of the same path, or ""
   bool repeated = false; ///< an array of tables: [[stage]]
   std::string doc;

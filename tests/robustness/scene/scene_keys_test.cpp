@@ -34,7 +34,12 @@ bool in_range(const SceneKey& key, double value) {
 std::vector<std::string> wrong_values(const SceneKey& key) {
   using Type = SceneKey::Type;
   const bool is_number = key.type == Type::integer || key.type == Type::real;
-  std::vector<std::string> wrong = {"[1, 2]", "{ a = 1 }", "1979-05-27", "[]"};
+  std::vector<std::string> wrong = {"{ a = 1 }", "1979-05-27", "[]"};
+  if (key.type != Type::numbers) {
+    wrong.emplace_back("[1, 2]");
+  } else {
+    wrong.insert(wrong.end(), {"[1, -1e300]", "[1, nan]", "[\"a\"]", "[[1]]", "5"});
+  }
   if (key.type != Type::boolean) {
     wrong.insert(wrong.end(), {"true", "false"});
   }

@@ -42,6 +42,9 @@ public:
 private:
   std::string table(const std::string& line) const {
     std::string text = section_.repeated ? "[[" + section_.path + "]]\n" : "[" + section_.path + "]\n";
+    if (section_.path == "species.size") { // 64 sizes and more
+      text = "[[species]]\ntemplate = \"t\"\nalpha = 2.0\ncount = 100\n" + text;
+    }
     if (!section_.kind.empty()) {
       text += "type = \"" + section_.kind + "\"\n";
     }
@@ -80,6 +83,13 @@ private:
         needed["yield_strain"] = "0.1";
       } else if (key_ == "break_scatter") {
         needed["break_strain"] = "0.2";
+      }
+      return needed;
+    }
+    if (path == "species.size") {
+      std::map<std::string, std::string> needed = {{"distribution", "\"uniform\""}, {"spread", "0.1"}};
+      if (key_ == "diameters" || key_ == "shares") {
+        needed = {{"distribution", "\"list\""}, {"diameters", "[1.0]"}};
       }
       return needed;
     }
