@@ -94,7 +94,11 @@ private:
       return needed;
     }
     if (path == "measure") {
-      return {{"what", "\"stress\""}};
+      return key_ == "rest_time" ? std::map<std::string, std::string>{{"what", "\"order\""}, {"relaxed", "true"}}
+                                 : std::map<std::string, std::string>{{"what", "\"stress\""}};
+    }
+    if (path != "stage" && path != "start") {
+      return {};
     }
     if (path == "start") {
       return key_.starts_with("lammps") ? std::map<std::string, std::string>{{"lammps_reference", "\"a.data\""}}
@@ -117,6 +121,17 @@ private:
     auto needed = found == of_stage.end() ? std::map<std::string, std::string>{} : found->second;
     if (key_ == "normalised_pressure") {
       needed.erase("pressure");
+    }
+    if (section_.kind == "press" && key_ == "clamp_thickness") {
+      needed["ends"] = "\"clamps\"";
+    }
+    if (section_.kind == "relax" && (key_ == "stress_tolerance" || key_ == "gain" || key_ == "rate_cap")) {
+      needed["pressure"] = "0.1";
+    }
+    if (section_.kind == "deform" && key_ == "period") {
+      needed.erase("time");
+      needed["xy_amplitude"] = "0.1";
+      needed.erase("xx_stress");
     }
     const std::string component = key_.substr(0, 2);
     if (key_.ends_with("_amplitude")) {
