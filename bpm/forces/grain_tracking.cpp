@@ -22,6 +22,7 @@ kernels::FrameArraysOf<Coordinate> frame_arrays_of(const Block& block, const Lan
                                                    const float* places, double quantum) {
   return {arrays.x.data() + block.offset, places + block.offset, block.n_nodes, block.n_lanes, quantum};
 }
+
 } // namespace
 
 GrainTracking::GrainTracking(const LaneLayout& layout, const kernels::KernelTable& table, const ContactReach& reach)

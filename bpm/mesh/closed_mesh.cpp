@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/mesh/closed_mesh.h"
 
+#include "bpm/grain/template_spec.h"
+
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -78,18 +80,20 @@ class MeshSurface final : public ClosedSurface {
 public:
   MeshSurface(const TriangleMesh& mesh, double volume) : volume_(volume) {
     std::vector<SurfaceMesh::Vertex_index> vertices;
+    std::string bytes; // of all that it is made of
     for (const Vector3d& p : mesh.points) {
       vertices.push_back(surface_.add_vertex(Point(p.x(), p.y(), p.z())));
       half_lengths_ = half_lengths_.cwiseMax(p.cwiseAbs());
-      note(p.data(), sizeof(double) * 3);
+      bytes.append(reinterpret_cast<const char*>(p.data()), sizeof(double) * 3);
     }
     for (const auto& t : mesh.triangles) {
       if (surface_.add_face(vertices[t[0]], vertices[t[1]], vertices[t[2]]) == SurfaceMesh::null_face()) {
         refuse(fmt::format("is not the surface of a solid: parts of it meet in the point {} alone",
                            shown(mesh.points[t[0]])));
       }
-      note(t.data(), sizeof(int) * 3);
+      bytes.append(reinterpret_cast<const char*>(t.data()), sizeof(int) * 3);
     }
+    hash_ = template_hash(bytes);
     check_crossings();
     tree_.rebuild(faces(surface_).first, faces(surface_).second, surface_);
     tree_.accelerate_distance_queries();
@@ -120,16 +124,10 @@ private:
                          shown({p.x(), p.y(), p.z()})));
     }
   }
-  /// 64-bit FNV-1a.
-  void note(const void* data, std::size_t bytes) {
-    for (std::size_t b = 0; b < bytes; ++b) {
-      hash_ = (hash_ ^ static_cast<const unsigned char*>(data)[b]) * 0x100000001b3ULL;
-    }
-  }
 
   double volume_;
   Vector3d half_lengths_ = Vector3d::Zero();
-  std::uint64_t hash_ = 0xcbf29ce484222325ULL;
+  std::uint64_t hash_ = 0;
   SurfaceMesh surface_;
   Tree tree_;
   std::unique_ptr<CGAL::Side_of_triangle_mesh<SurfaceMesh, Kernel>> side_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/packing/node_insertion.h"
 
+#include "bpm/grain/near_pairs.h"
 #include "bpm/grain/random.h"
 
 #include <algorithm>
@@ -64,7 +65,7 @@ public:
     const Grain& grain = insertion_.grains[g];
     const Eigen::Matrix3d turn = pose.rotation.toRotationMatrix();
     for (const int node : outermost_first_[grain.template_index]) {
-      if (is_taken(wrapped(pose.centre + turn * template_of(grain).position[node]))) {
+      if (is_taken(into_cell(pose.centre + turn * template_of(grain).position[node]))) {
         return false;
       }
     }
@@ -76,7 +77,7 @@ public:
     const Eigen::Matrix3d turn = pose.rotation.toRotationMatrix();
     for (int node = 0; node < grain.n_nodes(); ++node) {
       const std::int64_t n = first_[g] + node;
-      x_[n] = wrapped(pose.centre + turn * grain.position[node]);
+      x_[n] = into_cell(pose.centre + turn * grain.position[node]);
       std::int64_t& head = head_[cell_of(x_[n])];
       next_[n] = head;
       head = n;
@@ -97,7 +98,7 @@ public:
 private:
   static constexpr double most_cells = 256.0; ///< along an edge
 
-  Vector3 wrapped(const Vector3& x) const {
+  Vector3 into_cell(const Vector3& x) const {
     Vector3 result = x;
     for (double& c : result) {
       c -= edge_ * std::floor(c / edge_);
@@ -116,11 +117,7 @@ private:
         for (int a = cell[0] - reach; a <= cell[0] + reach; ++a) {
           const std::size_t place = (static_cast<std::size_t>((c + n_) % n_) * n_ + (b + n_) % n_) * n_ + (a + n_) % n_;
           for (std::int64_t other = head_[place]; other >= 0; other = next_[other]) {
-            Vector3 difference = x_[other] - x;
-            for (double& d : difference) {
-              d -= edge_ * std::round(d / edge_);
-            }
-            if (difference.squaredNorm() < reach2_) {
+            if (wrapped(x_[other] - x, Vector3::Constant(edge_)).squaredNorm() < reach2_) {
               return true;
             }
           }

@@ -17,13 +17,17 @@ namespace {
 
 using Shape = TemplateSpec::Shape;
 
+std::string with_article(const std::string& shape) {
+  return (shape.front() == 'e' ? "an " : "a ") + shape;
+}
+
 /// "a sphere, a cylinder or a capsule": the shapes that take a key.
 std::string shapes_that_take(const std::string& key) {
   std::vector<std::string> shapes;
   for (const std::string& name : shape_names()) {
     const std::vector<std::string> keys = shape_kind(shape_from_string(name)).keys();
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) {
-      shapes.push_back((name.front() == 'e' ? "an " : "a ") + name);
+      shapes.push_back(with_article(name));
     }
   }
   const std::string last = shapes.back();
@@ -35,11 +39,10 @@ std::string shapes_that_take(const std::string& key) {
 void check_shape_keys(const SceneTable& table, Shape shape) {
   const std::vector<std::string> keys = shape_kind(shape).keys();
   const std::set<std::string> taken(keys.begin(), keys.end());
-  const std::string article = to_string(shape).front() == 'e' ? "an " : "a ";
   for (const std::string& name : shape_names()) {
     for (const std::string& key : shape_kind(shape_from_string(name)).keys()) {
       if (table.has(key) && !taken.contains(key)) {
-        table.fail(key, fmt::format("belongs to {}, not to {}{}", shapes_that_take(key), article, to_string(shape)));
+        table.fail(key, fmt::format("belongs to {}, not to {}", shapes_that_take(key), with_article(to_string(shape))));
       }
     }
   }

@@ -37,7 +37,6 @@ InsertStart::InsertStart(const SceneTable& table, const StartFiles&)
       rotate_(table.boolean("rotate", true)), arrangement_(arrangement_named(table.text("arrangement", "random"))) {
   const std::string walls = table.text("walls", "none");
   walls_ = {walls == "xyz", walls == "xyz", walls != "none"};
-  has_walls_ = walls_[2];
 }
 
 void InsertStart::check(const SceneTable& table, const SceneGrains& grains) const {
@@ -129,7 +128,7 @@ Packing InsertStart::make(const StartContext& context) const {
   insertion.rotate = rotate_;
   insertion.seed = context.seed;
   insertion.diameter = between_grains(context.material).diameter;
-  if (has_walls_ && context.material.contact == HertzLaw::name) {
+  if (walls_[2] && context.material.contact == HertzLaw::name) {
     throw std::invalid_argument(
         "insert: walls have no meaning with material.hertz_modulus: Hertz's law is for contacts "
         "of two spheres");
@@ -137,7 +136,7 @@ Packing InsertStart::make(const StartContext& context) const {
   const double reach = 0.5 * insertion.diameter;
   Packing packing = at_random ? insert_where_possible(std::move(insertion), may_lower_, context.narrate)
                               : insert_on_lattice(insertion, arrangement_);
-  return has_walls_ ? between_walls(std::move(packing), walls_, reach) : packing;
+  return walls_[2] ? between_walls(std::move(packing), walls_, reach) : packing;
 }
 
 } // namespace boba

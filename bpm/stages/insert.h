@@ -17,7 +17,7 @@ public:
   InsertStart(const SceneTable& table, const StartFiles& files);
 
   void check(const SceneTable& table, const SceneGrains& grains) const override;
-  bool cell_is_open(const SceneGrains&) const override { return has_walls_; }
+  bool cell_is_open(const SceneGrains&) const override { return walls_[2]; }
   Packing make(const StartContext& context) const override;
   double packing_fraction() const { return packing_fraction_; }
 
@@ -25,8 +25,7 @@ private:
   double packing_fraction_; ///< sum of reference volumes over cell volume
   bool may_lower_;          ///< the scene leaves it open
   bool rotate_;
-  std::array<bool, 3> walls_{}; ///< across which axes
-  bool has_walls_ = false;
+  std::array<bool, 3> walls_{}; ///< across which axes; z wherever there are any
   Arrangement arrangement_;
 };
 

@@ -14,7 +14,6 @@ namespace boba {
 
 void PressDriver::begin(Stepper& stepper) {
   dt_ = stepper.options().dt;
-  faces_are_walls_ = stepper.moving().packing.walls[2];
   stage_.ends == PressStage::Ends::walls ? begin_walls(stepper) : begin_clamps(stepper);
   steps_.begin(stage_.strain * height_ / (2.0 * std::abs(stage_.velocity)), dt_);
 }
@@ -53,7 +52,7 @@ CellRates PressDriver::update(Stepper& stepper) {
   steps_.count();
   stepper.ends().advance(dt_);
   stepper.ends().set_gap(height_ - 2.0 * moved());
-  if (faces_are_walls_) {
+  if (stepper.moving().packing.walls[2]) { // the cell ends at the walls
     stepper.moving().cell.set_height(height_ - 2.0 * moved());
   }
   return {};
@@ -75,7 +74,6 @@ StageProgress PressDriver::progress(const Stepper&) const {
 void PressDriver::archive(Archive& archive) {
   archive.field("height", height_);
   archive.field("dt", dt_);
-  archive.field("faces_are_walls", faces_are_walls_);
   archive.object("steps", steps_);
 }
 

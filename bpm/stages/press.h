@@ -39,7 +39,6 @@ private:
   PressStage stage_;
   double height_ = 0.0; ///< between the ends at the start, d
   double dt_ = 0.0;
-  bool faces_are_walls_ = false; ///< the cell ends at the walls
 };
 
 /// A [[stage]] with `type = "press"`.

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/grain/shapes/box_shape.h"
-
 #include "bpm/grain/shapes/push_back.h"
-
-#include <fmt/format.h>
+#include "bpm/grain/shapes/shape_kinds.h"
+#include "bpm/grain/shapes/sized_kind.h"
 
 namespace boba {
 
@@ -23,43 +21,33 @@ private:
   Vector3d half_lengths_;
 };
 
-std::vector<BoundedLength> lengths(const TemplateSpec& spec, double lowest) {
-  std::vector<BoundedLength> result;
-  for (int a = 0; a < 3; ++a) {
-    result.push_back({fmt::format("size[{}]", a), spec.size[a], lowest});
-  }
-  return result;
-}
+/// `size`: the edges of a cuboid.
+class BoxKind : public SizedKind {
+public:
+  std::string name() const override { return "box"; }
+  std::unique_ptr<const SolidShape> make(const TemplateSpec& spec, double scale) const override;
+};
 
-} // namespace
-
-std::string size_text(const TemplateSpec& spec) {
-  const double unit = spec.n_nodes ? spec.size.x() : 1.0;
-  return fmt::format(" size={},{},{}", spec.size.x() / unit, spec.size.y() / unit, spec.size.z() / unit);
-}
-
-std::vector<BoundedLength> given_size(const TemplateSpec& spec) {
-  return lengths(spec, spec.n_nodes ? least_proportion : least_width);
-}
-
-std::vector<BoundedLength> size_widths(const TemplateSpec& spec) {
-  return lengths(spec, least_width);
-}
+/// The same without a surface: bonds cross the faces.
+class PeriodicBoxKind final : public BoxKind {
+public:
+  std::string name() const override { return "periodic_box"; }
+};
 
 std::unique_ptr<const SolidShape> BoxKind::make(const TemplateSpec& spec, double scale) const {
   return std::make_unique<Cuboid>(0.5 * spec.size * scale);
 }
 
-std::vector<BoundedLength> BoxKind::given(const TemplateSpec& spec) const {
-  return given_size(spec);
+} // namespace
+
+const ShapeKind& box_kind() {
+  static const BoxKind kind;
+  return kind;
 }
 
-std::vector<BoundedLength> BoxKind::widths(const TemplateSpec& spec) const {
-  return size_widths(spec);
-}
-
-std::string BoxKind::text(const TemplateSpec& spec) const {
-  return size_text(spec);
+const ShapeKind& periodic_box_kind() {
+  static const PeriodicBoxKind kind;
+  return kind;
 }
 
 } // namespace boba

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/grain/shapes/capsule.h"
+#include "bpm/grain/shapes/shape_kinds.h"
+#include "bpm/grain/shapes/sized_kind.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,24 +43,21 @@ private:
   double radius_, half_axis_;
 };
 
-} // namespace
+/// `radius` and `height`: a cylinder along z with two half spheres, `height` long with both.
+class CapsuleKind final : public RadiusAndHeightKind {
+public:
+  std::string name() const override { return "capsule"; }
+  std::unique_ptr<const SolidShape> make(const TemplateSpec& spec, double scale) const override;
+  std::vector<BoundedLength> widths(const TemplateSpec& spec) const override;
+  void check(const TemplateSpec& spec) const override;
+};
 
 std::unique_ptr<const SolidShape> CapsuleKind::make(const TemplateSpec& spec, double scale) const {
   return std::make_unique<Capsule>(spec.radius * scale, (0.5 * spec.height - spec.radius) * scale);
 }
 
-std::vector<BoundedLength> CapsuleKind::given(const TemplateSpec& spec) const {
-  return {{"radius", spec.radius, spec.n_nodes ? least_proportion : 1.5},
-          {"height", spec.height, spec.n_nodes ? least_proportion : least_width}};
-}
-
 std::vector<BoundedLength> CapsuleKind::widths(const TemplateSpec& spec) const {
   return {{"diameter", 2.0 * spec.radius, least_width}};
-}
-
-std::string CapsuleKind::text(const TemplateSpec& spec) const {
-  const double unit = spec.n_nodes ? spec.radius : 1.0;
-  return fmt::format(" radius={} height={}", spec.radius / unit, spec.height / unit);
 }
 
 void CapsuleKind::check(const TemplateSpec& spec) const {
@@ -68,6 +66,13 @@ void CapsuleKind::check(const TemplateSpec& spec) const {
                                             "capsule is two half spheres and what lies between",
                                             spec.height, 2.0 * spec.radius));
   }
+}
+
+} // namespace
+
+const ShapeKind& capsule_kind() {
+  static const CapsuleKind kind;
+  return kind;
 }
 
 } // namespace boba

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/grain/shapes/cylinder.h"
-
 #include "bpm/grain/shapes/push_back.h"
+#include "bpm/grain/shapes/shape_kinds.h"
+#include "bpm/grain/shapes/sized_kind.h"
 
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 namespace boba {
 
@@ -31,24 +30,27 @@ private:
   Vector3d half_lengths_;
 };
 
-} // namespace
+/// `radius` and `height`, axis along z.
+class CylinderKind final : public RadiusAndHeightKind {
+public:
+  std::string name() const override { return "cylinder"; }
+  std::unique_ptr<const SolidShape> make(const TemplateSpec& spec, double scale) const override;
+  std::vector<BoundedLength> widths(const TemplateSpec& spec) const override;
+};
 
 std::unique_ptr<const SolidShape> CylinderKind::make(const TemplateSpec& spec, double scale) const {
   return std::make_unique<Cylinder>(spec.radius * scale, 0.5 * spec.height * scale);
-}
-
-std::vector<BoundedLength> CylinderKind::given(const TemplateSpec& spec) const {
-  return {{"radius", spec.radius, spec.n_nodes ? least_proportion : 1.5},
-          {"height", spec.height, spec.n_nodes ? least_proportion : least_width}};
 }
 
 std::vector<BoundedLength> CylinderKind::widths(const TemplateSpec& spec) const {
   return {{"diameter", 2.0 * spec.radius, least_width}, {"height", spec.height, least_width}};
 }
 
-std::string CylinderKind::text(const TemplateSpec& spec) const {
-  const double unit = spec.n_nodes ? spec.radius : 1.0;
-  return fmt::format(" radius={} height={}", spec.radius / unit, spec.height / unit);
+} // namespace
+
+const ShapeKind& cylinder_kind() {
+  static const CylinderKind kind;
+  return kind;
 }
 
 } // namespace boba

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bpm/grain/shapes/ellipsoid.h"
 
-#include "bpm/grain/shapes/box_shape.h"
+#include "bpm/grain/shapes/shape_kinds.h"
+#include "bpm/grain/shapes/sized_kind.h"
 
 #include <cmath>
 
@@ -25,6 +26,17 @@ private:
   Vector3d half_lengths_;
 };
 
+/// `size`: the three diameters.
+class EllipsoidKind final : public SizedKind {
+public:
+  std::string name() const override { return "ellipsoid"; }
+  std::unique_ptr<const SolidShape> make(const TemplateSpec& spec, double scale) const override;
+};
+
+std::unique_ptr<const SolidShape> EllipsoidKind::make(const TemplateSpec& spec, double scale) const {
+  return std::make_unique<Ellipsoid>(0.5 * spec.size * scale);
+}
+
 } // namespace
 
 Vector3d nearest_on_ellipsoid(const Vector3d& half_lengths, const Vector3d& x) {
@@ -45,20 +57,9 @@ Vector3d nearest_on_ellipsoid(const Vector3d& half_lengths, const Vector3d& x) {
   return (a2 * x.array() / (a2 + t)).matrix();
 }
 
-std::unique_ptr<const SolidShape> EllipsoidKind::make(const TemplateSpec& spec, double scale) const {
-  return std::make_unique<Ellipsoid>(0.5 * spec.size * scale);
-}
-
-std::vector<BoundedLength> EllipsoidKind::given(const TemplateSpec& spec) const {
-  return given_size(spec);
-}
-
-std::vector<BoundedLength> EllipsoidKind::widths(const TemplateSpec& spec) const {
-  return size_widths(spec);
-}
-
-std::string EllipsoidKind::text(const TemplateSpec& spec) const {
-  return size_text(spec);
+const ShapeKind& ellipsoid_kind() {
+  static const EllipsoidKind kind;
+  return kind;
 }
 
 } // namespace boba

@@ -1,20 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "bpm/grain/shapes/shape.h"
+#include <Eigen/Core>
 
 namespace boba {
-
-/// `size`: the three diameters.
-class EllipsoidKind final : public ShapeKind {
-public:
-  std::string name() const override { return "ellipsoid"; }
-  std::vector<std::string> keys() const override { return {"size"}; }
-  std::unique_ptr<const SolidShape> make(const TemplateSpec& spec, double scale) const override;
-  std::vector<BoundedLength> given(const TemplateSpec& spec) const override;
-  std::vector<BoundedLength> widths(const TemplateSpec& spec) const override;
-  std::string text(const TemplateSpec& spec) const override;
-};
 
 /// The point of the ellipsoid sum (x_i / a_i)^2 = 1 that is nearest to a point outside it, d.
 ///

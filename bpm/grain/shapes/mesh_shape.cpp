@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/grain/shapes/mesh_shape.h"
-
 #include "bpm/grain/shapes/closed_surface.h"
+#include "bpm/grain/shapes/shape_kinds.h"
 
 #include <fmt/format.h>
 #include <stdexcept>
@@ -47,7 +46,17 @@ std::vector<BoundedLength> extents(const TemplateSpec& spec, double lowest) {
       {"extent along x", size.x(), lowest}, {"extent along y", size.y(), lowest}, {"extent along z", size.z(), lowest}};
 }
 
-} // namespace
+/// `file`, a closed surface of triangles, and `scale`, its unit in d.
+class MeshKind final : public ShapeKind {
+public:
+  std::string name() const override { return "mesh"; }
+  std::vector<std::string> keys() const override { return {"file", "scale"}; }
+  std::unique_ptr<const SolidShape> make(const TemplateSpec& spec, double scale) const override;
+  std::vector<BoundedLength> given(const TemplateSpec& spec) const override;
+  std::vector<BoundedLength> widths(const TemplateSpec& spec) const override;
+  std::string text(const TemplateSpec& spec) const override;
+  void check(const TemplateSpec& spec) const override;
+};
 
 std::unique_ptr<const SolidShape> MeshKind::make(const TemplateSpec& spec, double scale) const {
   surface_of(spec);
@@ -73,6 +82,13 @@ void MeshKind::check(const TemplateSpec& spec) const {
                                             "1e6",
                                             spec.scale));
   }
+}
+
+} // namespace
+
+const ShapeKind& mesh_kind() {
+  static const MeshKind kind;
+  return kind;
 }
 
 } // namespace boba

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/grain/shapes/polyhedron.h"
-
 #include "bpm/grain/shapes/convex_polyhedron.h"
+#include "bpm/grain/shapes/shape_kinds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +88,19 @@ ConvexPolyhedron plain(const TemplateSpec& spec, double scale) {
   return ConvexPolyhedron(vertices);
 }
 
-} // namespace
+/// `polyhedron`, a name, with `radius`, that of the sphere through its outermost corners; or `vertices`. `rounding` s
+/// shrinks it about its centre by 1 - s and rolls a ball round it whose radius is s times that of the largest sphere
+/// inside, so that faces keep their places where all touch that sphere.
+class PolyhedronKind final : public ShapeKind {
+public:
+  std::string name() const override { return "polyhedron"; }
+  std::vector<std::string> keys() const override { return {"polyhedron", "vertices", "radius", "rounding"}; }
+  std::unique_ptr<const SolidShape> make(const TemplateSpec& spec, double scale) const override;
+  std::vector<BoundedLength> given(const TemplateSpec& spec) const override;
+  std::vector<BoundedLength> widths(const TemplateSpec& spec) const override;
+  std::string text(const TemplateSpec& spec) const override;
+  void check(const TemplateSpec& spec) const override;
+};
 
 std::unique_ptr<const SolidShape> PolyhedronKind::make(const TemplateSpec& spec, double scale) const {
   const double radius = spec.rounding > 0.0 ? spec.rounding * plain(spec, scale).inner_radius() : 0.0;
@@ -127,6 +138,13 @@ void PolyhedronKind::check(const TemplateSpec& spec) const {
         fmt::format("grain template: rounding = {} is outside the allowed 0 .. 0.9", spec.rounding));
   }
   plain(spec, 1.0);
+}
+
+} // namespace
+
+const ShapeKind& polyhedron_kind() {
+  static const PolyhedronKind kind;
+  return kind;
 }
 
 } // namespace boba

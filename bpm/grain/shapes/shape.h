@@ -33,7 +33,8 @@ struct BoundedLength {
   double lowest;
 };
 
-/// All that differs from one kind of shape to the next. A new kind is a class of its own and a line in shape_kinds.cpp.
+/// All that differs from one kind of shape to the next. A new kind is a source file and a line each in shape_kinds.h
+/// and shape_kinds.cpp.
 class ShapeKind {
 public:
   virtual ~ShapeKind() = default;

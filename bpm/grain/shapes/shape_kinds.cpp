@@ -1,12 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/grain/shapes/box_shape.h"
-#include "bpm/grain/shapes/capsule.h"
-#include "bpm/grain/shapes/cylinder.h"
-#include "bpm/grain/shapes/ellipsoid.h"
-#include "bpm/grain/shapes/mesh_shape.h"
-#include "bpm/grain/shapes/polyhedron.h"
-#include "bpm/grain/shapes/sphere.h"
-#include "bpm/grain/shapes/superellipsoid.h"
+#include "bpm/grain/shapes/shape_kinds.h"
 
 #include <array>
 #include <stdexcept>
@@ -18,25 +11,17 @@ namespace {
 
 /// All kinds, in the order of TemplateSpec::Shape.
 const auto& all_kinds() {
-  static const SphereKind sphere;
-  static const CylinderKind cylinder;
-  static const BoxKind box;
-  static const PeriodicBoxKind periodic_box;
-  static const EllipsoidKind ellipsoid;
-  static const SuperellipsoidKind superellipsoid;
-  static const CapsuleKind capsule;
-  static const PolyhedronKind polyhedron;
-  static const MeshKind mesh;
-  static const std::array<std::pair<TemplateSpec::Shape, const ShapeKind*>, 9> kinds = {
-      {{TemplateSpec::Shape::sphere, &sphere},
-       {TemplateSpec::Shape::cylinder, &cylinder},
-       {TemplateSpec::Shape::box, &box},
-       {TemplateSpec::Shape::periodic_box, &periodic_box},
-       {TemplateSpec::Shape::ellipsoid, &ellipsoid},
-       {TemplateSpec::Shape::superellipsoid, &superellipsoid},
-       {TemplateSpec::Shape::capsule, &capsule},
-       {TemplateSpec::Shape::polyhedron, &polyhedron},
-       {TemplateSpec::Shape::mesh, &mesh}}};
+  using Shape = TemplateSpec::Shape;
+  static const std::array<std::pair<Shape, const ShapeKind*>, 9> kinds = {
+      {{Shape::sphere, &sphere_kind()},
+       {Shape::cylinder, &cylinder_kind()},
+       {Shape::box, &box_kind()},
+       {Shape::periodic_box, &periodic_box_kind()},
+       {Shape::ellipsoid, &ellipsoid_kind()},
+       {Shape::superellipsoid, &superellipsoid_kind()},
+       {Shape::capsule, &capsule_kind()},
+       {Shape::polyhedron, &polyhedron_kind()},
+       {Shape::mesh, &mesh_kind()}}};
   return kinds;
 }
 

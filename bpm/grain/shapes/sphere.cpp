@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/grain/shapes/sphere.h"
+#include "bpm/grain/shapes/shape_kinds.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -25,7 +25,16 @@ private:
   double radius_;
 };
 
-} // namespace
+/// `radius`.
+class SphereKind final : public ShapeKind {
+public:
+  std::string name() const override { return "sphere"; }
+  std::vector<std::string> keys() const override { return {"radius"}; }
+  std::unique_ptr<const SolidShape> make(const TemplateSpec& spec, double scale) const override;
+  std::vector<BoundedLength> given(const TemplateSpec& spec) const override;
+  std::vector<BoundedLength> widths(const TemplateSpec&) const override { return {}; }
+  std::string text(const TemplateSpec& spec) const override;
+};
 
 std::unique_ptr<const SolidShape> SphereKind::make(const TemplateSpec& spec, double scale) const {
   return std::make_unique<Sphere>(spec.radius * scale);
@@ -37,6 +46,13 @@ std::vector<BoundedLength> SphereKind::given(const TemplateSpec& spec) const {
 
 std::string SphereKind::text(const TemplateSpec& spec) const {
   return spec.n_nodes ? "" : fmt::format(" radius={}", spec.radius);
+}
+
+} // namespace
+
+const ShapeKind& sphere_kind() {
+  static const SphereKind kind;
+  return kind;
 }
 
 } // namespace boba

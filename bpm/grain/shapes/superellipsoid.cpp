@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bpm/grain/shapes/superellipsoid.h"
-
-#include "bpm/grain/shapes/box_shape.h"
+#include "bpm/grain/shapes/shape_kinds.h"
+#include "bpm/grain/shapes/sized_kind.h"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -67,22 +66,25 @@ private:
   double e_, f_;
 };
 
-} // namespace
+/// `size`, `exponent` e and `exponent_z` f: (|x/a|^e + |y/b|^e)^(f/e) + |z/c|^f = 1, with a, b, c half the size.
+///
+/// An exponent of 2 is round, a large one a box, 1 an octahedron. Source of the form: A. H. Barr, "Superquadrics and
+/// angle-preserving transformations", IEEE Computer Graphics and Applications 1 (1981), 11.
+class SuperellipsoidKind final : public SizedKind {
+public:
+  std::string name() const override { return "superellipsoid"; }
+  std::vector<std::string> keys() const override { return {"size", "exponent", "exponent_z"}; }
+  std::unique_ptr<const SolidShape> make(const TemplateSpec& spec, double scale) const override;
+  std::string text(const TemplateSpec& spec) const override;
+  void check(const TemplateSpec& spec) const override;
+};
 
 std::unique_ptr<const SolidShape> SuperellipsoidKind::make(const TemplateSpec& spec, double scale) const {
   return std::make_unique<Superellipsoid>(0.5 * spec.size * scale, spec.exponent, exponent_z(spec));
 }
 
-std::vector<BoundedLength> SuperellipsoidKind::given(const TemplateSpec& spec) const {
-  return given_size(spec);
-}
-
-std::vector<BoundedLength> SuperellipsoidKind::widths(const TemplateSpec& spec) const {
-  return size_widths(spec);
-}
-
 std::string SuperellipsoidKind::text(const TemplateSpec& spec) const {
-  return size_text(spec) + fmt::format(" exponent={} exponent_z={}", spec.exponent, exponent_z(spec));
+  return SizedKind::text(spec) + fmt::format(" exponent={} exponent_z={}", spec.exponent, exponent_z(spec));
 }
 
 void SuperellipsoidKind::check(const TemplateSpec& spec) const {
@@ -92,6 +94,13 @@ void SuperellipsoidKind::check(const TemplateSpec& spec) const {
           "grain template: {} = {} is outside the allowed 1 .. 50 (below 1 a grain is concave)", name, value));
     }
   }
+}
+
+} // namespace
+
+const ShapeKind& superellipsoid_kind() {
+  static const SuperellipsoidKind kind;
+  return kind;
 }
 
 } // namespace boba

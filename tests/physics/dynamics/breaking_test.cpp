@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bonds that break, against what LAMMPS (bond style bpm/spring, break and smooth) computed;
 // tests/data/breaking/README.md.
-#include "bpm/dynamics/motion_archive.h"
 #include "bpm/dynamics/stepper.h"
 #include "bpm/dynamics/take_snapshot.h"
 #include "bpm/io/line_reader.h"
@@ -221,11 +220,8 @@ TEST(Breaking, ContinuesBitForBit) {
     Stepper whole(breakable(), {}, {.precision = precision});
     whole.start();
     shear(whole, 120);
-    SavedState saved;
-    Archive saving = Archive::saving_to(saved), reading = Archive::reading_from(saved);
-    archive_motion(saving, whole.moving());
     Stepper second(breakable(), {}, {.precision = precision});
-    archive_motion(reading, second.moving());
+    continue_from(whole, second);
     EXPECT_EQ(whole_bonds_of(whole), whole_bonds_of(second));
     const int before = n_whole(whole);
     shear(whole, 120);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "bpm/dynamics/motion_archive.h"
 #include "bpm/dynamics/simulation.h"
+#include "bpm/dynamics/stepper.h"
 #include "tests/support/small_packings.h"
 
 #include <gtest/gtest.h>
@@ -24,6 +26,14 @@ inline void expect_same_bits(const Snapshot& a, const Snapshot& b) {
     ASSERT_EQ(a.velocity[i], b.velocity[i]) << "node " << i;
     ASSERT_EQ(a.force[i], b.force[i]) << "node " << i;
   }
+}
+
+/// Gives the motion of a packing to another of the same grains, as a checkpoint would.
+inline void continue_from(Stepper& from, Stepper& to) {
+  SavedState saved;
+  Archive saving = Archive::saving_to(saved), reading = Archive::reading_from(saved);
+  archive_motion(saving, from.moving());
+  archive_motion(reading, to.moving());
 }
 
 inline constexpr Simulation::Parts all_parts = {.velocity = true, .force = true};

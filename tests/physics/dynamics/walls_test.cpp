@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Packings between rigid walls, and gravity: free fall, the weight on the floor, the work of a press and its way back.
-#include "bpm/dynamics/motion_archive.h"
 #include "bpm/dynamics/stepper.h"
 #include "bpm/dynamics/take_snapshot.h"
 #include "bpm/stages/press.h"
@@ -148,10 +147,7 @@ TEST(Walls, AllOfThemHoldTheGrainsAndAreKeptInACheckpoint) {
     }
   };
   run(stepper, 500);
-  SavedState saved;
-  Archive saving = Archive::saving_to(saved), reading = Archive::reading_from(saved);
-  archive_motion(saving, stepper.moving());
-  archive_motion(reading, continued.moving());
+  continue_from(stepper, continued);
   run(stepper, 1500);
   run(continued, 1500);
   const Snapshot end = take_snapshot(stepper.moving(), all_parts);

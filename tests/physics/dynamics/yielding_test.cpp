@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bonds that yield: one bond against the closed form, grains that keep their new shape, and runs that do not depend on
 // threads or restarts.
-#include "bpm/dynamics/motion_archive.h"
 #include "bpm/dynamics/stepper.h"
 #include "bpm/dynamics/take_snapshot.h"
 #include "bpm/laws/yielding.h"
@@ -149,10 +148,7 @@ TEST(Yielding, DoesNotDependOnThreadsOrRestarts) {
     one.start();
     two.start();
     shear(one, 120);
-    SavedState saved;
-    Archive saving = Archive::saving_to(saved), reading = Archive::reading_from(saved);
-    archive_motion(saving, one.moving());
-    archive_motion(reading, continued.moving());
+    continue_from(one, continued);
     shear(one, 120);
     shear(two, 120);
     shear(two, 120);

@@ -5,6 +5,7 @@
 #include "bpm/grain/shapes/convex_polyhedron.h"
 #include "bpm/grain/shapes/ellipsoid.h"
 #include "bpm/grain/shapes/shape.h"
+#include "tests/unit/grain/complaint.h"
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -209,15 +210,6 @@ TEST(Shapes, WalledGrainsFillTheirOutline) {
     }
     EXPECT_LT(farthest, 0.35) << label(spec); // about the wall, which is soft; nodes are centred after it
   }
-}
-
-std::string complaint(const TemplateSpec& spec) {
-  try {
-    validate(spec);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Shapes, SayWhatIsWrong) {

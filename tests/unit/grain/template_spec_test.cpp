@@ -2,6 +2,7 @@
 #include "bpm/grain/shapes/convex_polyhedron.h"
 #include "bpm/grain/shapes/shape.h"
 #include "bpm/grain/template_spec.h"
+#include "tests/unit/grain/complaint.h"
 
 #include <gtest/gtest.h>
 #include <limits>
@@ -12,15 +13,6 @@ namespace {
 
 using Shape = TemplateSpec::Shape;
 using Surface = TemplateSpec::Surface;
-
-std::string complaint(const TemplateSpec& spec) {
-  try {
-    validate(spec);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
-}
 
 TEST(TemplateSpec, NamesWhatIsWrong) {
   EXPECT_EQ(complaint({}), "");
